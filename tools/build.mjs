@@ -45,6 +45,7 @@ const modules = [
   { name: 'edgeflip_untangle', features: 'js-untangle', flags: engine },
   { name: 'edgeflip_audit', features: 'js-audit', flags: [] },
   { name: 'edgeflip_points', features: 'js-points', flags: engine },
+  { name: 'edgeflip_point_session', features: 'js-point-session', flags: engine },
   { name: 'edgeflip_points_threads', features: 'js-points-threads', flags: engine, options: ['--threads'] },
 ];
 // The features that rustc enables for wasm32, and SIMD. All browsers have had them since 2023, and so has every browser

@@ -2,10 +2,10 @@
 
 import { MOST_THREADS } from './cores.js';
 import { EdgeflipError } from './error.js';
-import { functionOf, isWhole, itselfOf, MOST_NUMBERS, NUMBERS, read, shown, viewOf } from './given.js';
+import { copyOf, functionOf, isWhole, itselfOf, MOST_NUMBERS, NUMBERS, read, shown, viewOf, wordsOf } from './given.js';
 import { namesOf, optionsOf } from './names.js';
 import type { Hold } from './settings.js';
-import type { VertexArray } from './types.js';
+import type { IndexArray, VertexArray } from './types.js';
 
 /** Where the points are in an array of numbers. */
 export interface Spacing {
@@ -33,12 +33,29 @@ export interface Threading {
   threads?: number | undefined;
 }
 
+/** Edges that the triangulation has to have. */
+export interface Constraints {
+  /**
+   * Pairs of points, by their indices, one pair after the other: each is joined by edges. A point on the way splits it.
+   * Constraints may repeat, overlap and meet at points; one between equal points is no edge. All other edges are
+   * Delaunay as far as points count that no constraint hides.
+   */
+  constraints?: IndexArray | undefined;
+  /** Leaves out the constraints that cross an earlier one, and lists them as `leftOut`. Default: they are errors. */
+  skipConstraints?: boolean | undefined;
+}
+
 /** The options of a call, checked. */
-export type Places = Spacing & Partial<Accessors<unknown>> & Threading;
+export interface Places extends Spacing, Partial<Accessors<unknown>>, Threading {
+  constraints?: Uint32Array | undefined;
+  skipConstraints?: boolean | undefined;
+}
 
 const OPTIONS = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: true, x: true, y: true });
-/** The options of a call that can use several threads. */
-export const THREADED = [...OPTIONS, ...namesOf<Threading>({ threads: true })];
+/** The options of a call that triangulates. */
+export const TRIANGULATED = [...OPTIONS, ...namesOf<Constraints>({ constraints: true, skipConstraints: true })];
+/** The options of one that can use several threads. */
+export const THREADED = [...TRIANGULATED, ...namesOf<Threading>({ threads: true })];
 
 /**
  * The coordinates of points. Every conversion is exact. `hold` copies an array of the caller or returns it.
@@ -75,9 +92,9 @@ export function coordinatesOf(
  */
 export function placesOf(options: unknown, known = OPTIONS): Places {
   return read('the options', () => {
-    const given = optionsOf(options, known) as Places;
+    const given = optionsOf(options, known) as Spacing & Partial<Accessors<unknown>> & Threading & Constraints;
     const { stride, offset } = given;
-    const threads = threadsOf(given.threads);
+    const more = { threads: threadsOf(given.threads), ...constraintsOf(given) };
     const [x, y] = [functionOf(given.x, 'x'), functionOf(given.y, 'y')];
     if (stride !== undefined && !(isWhole(stride) && stride >= 2)) {
       throw new EdgeflipError('invalid-input', `stride: ${shown(stride)} is not a whole number of at least 2`);
@@ -85,12 +102,12 @@ export function placesOf(options: unknown, known = OPTIONS): Places {
     if (offset !== undefined && !isWhole(offset)) {
       throw new EdgeflipError('invalid-input', `offset: ${shown(offset)} is not a whole number of 32 bits`);
     }
-    if (!x && !y) return { stride, offset, threads };
+    if (!x && !y) return { stride, offset, ...more };
     if (!x || !y) {
       throw new EdgeflipError('invalid-option', `option ${x ? 'y' : 'x'} is missing: x and y go together`);
     }
     if (stride !== undefined || offset !== undefined) throw notOfNumbers(stride);
-    return { x, y, threads };
+    return { x, y, ...more };
   });
 }
 
@@ -98,6 +115,17 @@ function threadsOf(given: unknown): number | undefined {
   if (given === undefined || (isWhole(given) && given >= 1 && given <= MOST_THREADS)) return given;
   const why = `${shown(given)} is not a number of threads: give 1 to ${MOST_THREADS}`;
   throw new EdgeflipError('invalid-option', `option threads: ${why}`);
+}
+
+/** Checks and copies the constraints. */
+function constraintsOf({ constraints, skipConstraints }: Constraints): Pick<Places, keyof Constraints> {
+  if (skipConstraints !== undefined && typeof skipConstraints !== 'boolean') {
+    throw new EdgeflipError('invalid-option', `option skipConstraints: ${shown(skipConstraints)} is not a boolean`);
+  }
+  if (constraints === undefined) return { skipConstraints };
+  const words = copyOf(wordsOf(constraints, 'option constraints', 'invalid-option'), 'constraints');
+  if (words.length % 2 === 0) return { constraints: words, skipConstraints };
+  throw new EdgeflipError('ragged-array', `constraints has ${words.length} numbers, not a multiple of 2`);
 }
 
 function notOfNumbers(stride: number | undefined): EdgeflipError {

@@ -34,6 +34,8 @@ export interface PointsSources extends Pick<Sources, 'base'> {
   points?: ModuleSource | undefined;
   /** For calls on several threads: `edgeflip_points_threads_bg.wasm`. */
   threads?: ModuleSource | undefined;
+  /** For points that move: `edgeflip_point_session_bg.wasm`. */
+  session?: ModuleSource | undefined;
 }
 
 /** The function of wasm-bindgen that starts a module. */

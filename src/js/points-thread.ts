@@ -7,7 +7,7 @@ import { initSync, startThreads, triangulate, work } from './wasm/edgeflip_point
 const calls = {
   ...begin({ initSync, startThreads, work }),
   /** The arrays of the result are the caller's: their buffers are transferred. */
-  triangulate: (coordinates: Float32Array | Float64Array) => triangulate(coordinates),
+  triangulate: (...args: Parameters<typeof triangulate>) => triangulate(...args),
 };
 
 export type Calls = typeof calls;

@@ -3,6 +3,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 
 import type { Audit, Problems } from './audit.js';
+import { dispose } from './dispose.js';
 import type { EDGE_STATES } from './edge-states.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { Preparation } from './prepare.js';
@@ -35,9 +36,6 @@ import type {
 } from './types.js';
 import { call } from './untangle.js';
 import { type Update, updateOf } from './update.js';
-
-/** Not every browser has `Symbol.dispose` yet. */
-const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
 
 /** As {@link FlipSession.create}, with the options of {@link makeDelaunay}. */
 export let createWatched: <I extends IndexArray>(

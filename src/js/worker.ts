@@ -16,6 +16,7 @@
 
 import type { Audit, Problems } from './audit.js';
 import { buffersOf } from './buffers.js';
+import { dispose } from './dispose.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, messageOf, read } from './given.js';
 import { floatsOf, type Layout, readMesh } from './mesh.js';
@@ -182,9 +183,6 @@ function named({ onProgress, onIteration, isStopped }: Watch): Watched {
 
 /** Frees the sessions that the garbage collection has removed. */
 const dropped = new FinalizationRegistry<() => void>((free) => free());
-
-/** Not every browser has `Symbol.dispose` yet. */
-const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');
 
 /** As `FlipSession` of `edgeflip`, in the worker. */
 export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIterable<Iteration>, Disposable {

@@ -58,7 +58,8 @@ impl Constraints<'_> {
             match stars.walk(ends) {
                 Ok(parts) => {
                     brought.edges.extend(parts.iter().map(|part| (index, part.ends)));
-                    let changed = parts.into_iter().flat_map(|part| stars.bring_in(part)).collect();
+                    let mut changed = Vec::new();
+                    parts.into_iter().for_each(|part| stars.bring_in(part, &mut changed));
                     stars.make_delaunay(changed);
                 }
                 Err(crossed) => {
@@ -76,11 +77,19 @@ impl Constraints<'_> {
 impl Brought {
     /// The constraints that were left out, with their reasons. `given` has the constraints by the caller's indices.
     pub(super) fn left_out(&self, given: &[[u32; 2]]) -> Vec<LeftOut> {
-        let mut origins: Vec<_> = self.edges.iter().map(|&(index, ends)| (ordered(ends), index)).collect();
+        if self.left_out.is_empty() {
+            return Vec::new();
+        }
+        // The ends of each edge, and the constraint that it is a part of.
+        let row = |&(index, ends): &(usize, [u32; 2])| {
+            let [a, b] = ordered(ends);
+            [a, b, index as u32, 0]
+        };
+        let mut origins: Vec<[u32; 4]> = self.edges.iter().map(row).collect();
         origins.sort_unstable();
         let reason = |&(index, crossed): &(usize, [u32; 2])| {
-            let first = origins.partition_point(|&(ends, _)| ends < ordered(crossed));
-            let other = origins.get(first).map_or(0, |&(_, index)| index);
+            let first = origins.partition_point(|row| row[..2] < ordered(crossed)[..]);
+            let other = origins.get(first).map_or(0, |row| row[2] as usize);
             let [[a, b], [c, d]] = [given[index], given[other]];
             let reason = format!(
                 "constraint {index} between {a} and {b} crosses constraint {other} between {c} and {d}"
@@ -98,9 +107,10 @@ impl Stars {
         while from != to {
             // One of the stars may be large.
             let [first, second] = [[from, to], [to, from]];
-            let starts = self.star(from).zip(self.star(to));
-            let mut starts = starts.flat_map(|(h, g)| [(first, h), (second, g)]);
-            let found = starts.find_map(|(ends, h)| Some((ends, self.start(ends, h)?)));
+            let found = self.star(from).zip(self.star(to)).find_map(|(h, g)| {
+                let start = |ends: [u32; 2], h: u32| Some((ends, self.start(ends, h)?));
+                start(first, h).or_else(|| start(second, g))
+            });
             let Some((ends, start)) = found else { break };
             let part = match start {
                 Start::Edge(h) => Part { ends: [ends[0], self.slots.origin(next(h))], way: Way::Edge(h) },
@@ -163,13 +173,10 @@ impl Stars {
         }
     }
 
-    /// Locks the edge of a part. Returns the half-edges of the triangles that are new.
-    fn bring_in(&mut self, Part { ends: [from, to], way }: Part) -> Vec<u32> {
+    /// Locks the edge of a part. Adds the half-edges of the triangles that are new.
+    fn bring_in(&mut self, Part { ends: [from, to], way }: Part, changed: &mut Vec<u32>) {
         let (slots, right, left) = match way {
-            Way::Edge(h) => {
-                self.lock(h);
-                return Vec::new();
-            }
+            Way::Edge(h) => return self.lock(h),
             Way::Across { slots, right, left } => (slots, right, left),
         };
         let sides: Vec<u32> = right.iter().chain(&left).copied().collect();
@@ -179,7 +186,9 @@ impl Stars {
         let g = polygons.fill(self, to, right.len()..sides.len(), &mut free);
         self.slots.join(h, g);
         self.lock(h);
-        slots.into_iter().flat_map(|slot| 4 * slot..4 * slot + 3).collect()
+        for slot in slots {
+            changed.extend(4 * slot..4 * slot + 3);
+        }
     }
 
     fn lock(&mut self, h: u32) {

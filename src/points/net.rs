@@ -11,7 +11,6 @@ use crate::NONE;
 use crate::predicates::nearer;
 use crate::system::threads::Threads;
 use glam::DVec2;
-use std::collections::BTreeSet;
 
 /// There is always a triangle.
 pub(super) struct Net {
@@ -20,8 +19,8 @@ pub(super) struct Net {
     pub(super) indices: Vec<u32>,
     /// The vertex of each of the caller's indices.
     vertices: Vec<u32>,
-    /// The vertices of other equal points, with the indices of these.
-    pub(super) copies: BTreeSet<[u32; 2]>,
+    /// The vertices of other equal points, with the indices of these. Sorted.
+    pub(super) copies: Vec<[u32; 2]>,
     pub(super) free_vertices: Vec<u32>,
     /// Slots that no triangle has: two per vertex that was removed.
     pub(super) free_slots: Vec<[u32; 2]>,
@@ -45,11 +44,12 @@ impl Net {
         for (vertex, &index) in (0..).zip(&places) {
             vertices[index as usize] = vertex;
         }
-        let mut copies = BTreeSet::new();
+        let mut copies = Vec::new();
         for [index, first] in duplicates.into_iter().map(|pair| pair.map(own)) {
             vertices[index as usize] = vertices[first as usize];
-            copies.insert([vertices[first as usize], index]);
+            copies.push([vertices[first as usize], index]);
         }
+        copies.sort_unstable();
         Some(Self {
             stars: Stars::new(points, slots),
             indices: places,
@@ -69,7 +69,7 @@ impl Net {
         let place = self.stars.place(self.start(near, point), point);
         if let Place::Vertex(vertex) = place {
             let owner = &mut self.indices[vertex as usize];
-            self.copies.insert([vertex, index.max(*owner)]);
+            insert(&mut self.copies, [vertex, index.max(*owner)]);
             *owner = index.min(*owner);
             self.vertices[index as usize] = vertex;
             self.last = vertex;
@@ -97,13 +97,14 @@ impl Net {
     /// Removes a point. Returns whether there is still a triangle.
     pub(super) fn remove(&mut self, index: u32) -> bool {
         let vertex = self.vertices[index as usize];
-        if self.copies.remove(&[vertex, index]) {
-            return true;
-        }
-        let copy = self.copies.range([vertex, 0]..=[vertex, NONE]).next().copied();
-        if let Some(copy @ [_, other]) = copy {
-            self.copies.remove(&copy);
-            self.indices[vertex as usize] = other;
+        // The point itself, if it is a copy, or else the first copy of it, which takes its place.
+        let is_copy = self.indices[vertex as usize] != index;
+        let at = self.copies.partition_point(|&copy| copy < [vertex, if is_copy { index } else { 0 }]);
+        if self.copies.get(at).is_some_and(|copy| copy[0] == vertex) {
+            let [_, copy] = self.copies.remove(at);
+            if !is_copy {
+                self.indices[vertex as usize] = copy;
+            }
             return true;
         }
         let Removed { changed, is_flat, .. } = self.take_out(vertex);
@@ -148,7 +149,7 @@ impl Net {
             return near;
         }
         let count = points.len();
-        let step = if self.is_close(place) { count } else { (count / libm::cbrt(count as f64) as usize).max(1) };
+        let step = if self.is_close(place) { count } else { count >> (count.ilog2() / 3) };
         let others = (0..count as u32).step_by(step).chain([self.last]).filter(is_there);
         let distance = |&vertex: &u32| points[vertex as usize].distance_squared(place);
         let nearest = others.min_by(|p, q| distance(p).total_cmp(&distance(q)));
@@ -229,9 +230,10 @@ impl Net {
         }
         self.last = at;
         // Edges join those that are as near.
-        let (mut ties, mut left) = (BTreeSet::from([at]), vec![at]);
+        let (mut ties, mut left) = (vec![at], vec![at]);
         while let Some(tie) = left.pop() {
-            left.extend(self.beside(tie, place, |order| order.is_eq()).filter(|&other| ties.insert(other)));
+            let others = self.beside(tie, place, |order| order.is_eq());
+            left.extend(others.filter(|&other| insert(&mut ties, other)));
         }
         ties.into_iter().map(|vertex| self.indices[vertex as usize]).min().unwrap_or_default()
     }
@@ -251,4 +253,9 @@ impl Net {
             }
         })
     }
+}
+
+/// Inserts an item into a sorted list. Returns whether it is new.
+fn insert<T: Ord>(list: &mut Vec<T>, item: T) -> bool {
+    list.binary_search(&item).map_err(|at| list.insert(at, item)).is_err()
 }

@@ -73,7 +73,6 @@ impl Stars {
     }
 
     /// Whether an edge stays. An edge of the hull does. One to the symbolic vertex does where the hull is convex.
-    #[inline(always)]
     pub(super) fn is_delaunay(&self, h: u32) -> bool {
         let slots = &self.slots;
         if slots.is_locked(h) {

@@ -11,6 +11,10 @@ pub mod gpu;
 mod objects;
 #[cfg(any(feature = "js-session", feature = "js-webgl2", feature = "js-audit"))]
 mod options;
+#[cfg(feature = "js-point-session")]
+pub mod point_session;
+#[cfg(any(feature = "js-points", feature = "js-point-session"))]
+mod point_values;
 #[cfg(feature = "js-points")]
 pub mod points;
 #[cfg(feature = "js-session")]

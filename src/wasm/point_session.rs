@@ -1,9 +1,8 @@
 //! Points that move, come and go, for the npm package. The only caller is `src/js/point-session.ts`, which has made sure
 //! that indices are whole numbers.
 
-use super::points::{in_words_of_points, triangulation_object};
+use super::point_values::{in_words_of_points, positions, triangulation_object};
 use crate::wasm::values::JsPositions;
-use crate::{Positions, Triangulation, system::memory};
 use js_sys::Uint32Array;
 use wasm_bindgen::prelude::*;
 

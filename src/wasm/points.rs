@@ -1,36 +1,23 @@
 //! The triangulation of points for the npm package, in modules of its own: on one thread, and on several. Their only
 //! callers are `src/js/points.ts` and `src/js/points-thread.ts`; the former has made sure that the length is even.
 
-use crate::system::memory;
-use crate::wasm::values::{JsPositions, coded, object, thrown};
-use crate::{Error, Triangulation};
-use js_sys::Uint32Array;
+use super::point_values::{in_words_of_points, positions, triangulation_object};
+use crate::PointOptions;
+use crate::wasm::values::JsPositions;
 use wasm_bindgen::prelude::*;
 
-/// As [`triangulate`](crate::triangulate): 2 numbers per point.
+/// As [`triangulate_with`](crate::triangulate_with): 2 numbers per point, and pairs of points.
 ///
 /// # Errors
-/// Those of [`triangulate`](crate::triangulate).
-#[wasm_bindgen(unchecked_return_type = "Omit<import('../points.js').Triangulation, 'threads' | 'hint'>")]
-pub fn triangulate(points: JsPositions) -> Result<JsValue, JsValue> {
-    let triangulate = || {
-        memory::check(points.byte_length() as u64)?;
-        crate::triangulate(&points.into())
-    };
-    let Triangulation { triangles, twins, hull, duplicates } = triangulate().map_err(in_words_of_points)?;
-    let array = |words: &[u32]| JsValue::from(Uint32Array::from(words));
-    Ok(object([
-        ("triangles", array(&triangles)),
-        ("twins", array(&twins)),
-        ("hull", array(&hull)),
-        ("duplicates", array(duplicates.as_flattened())),
-    ]))
-}
-
-/// The exception for an error. What other modules call a vertex is a point here.
-fn in_words_of_points(error: Error) -> JsValue {
-    match error {
-        Error::NonFinite { .. } => coded(error.code(), &error.to_string().replacen("vertex", "point", 1)),
-        error => thrown(error),
-    }
+/// Those of [`triangulate_with`](crate::triangulate_with).
+#[wasm_bindgen(unchecked_return_type = "Arrays")]
+pub fn triangulate(
+    points: JsPositions,
+    constraints: Option<Vec<u32>>,
+    skips_constraints: bool,
+) -> Result<JsValue, JsValue> {
+    let constraints = constraints.unwrap_or_default().as_chunks().0.to_vec();
+    let options = PointOptions { constraints, skips_constraints, ..PointOptions::default() };
+    let triangulate = || crate::triangulate_with(&positions(points)?, &options);
+    triangulate().map(|triangulation| triangulation_object(&triangulation)).map_err(in_words_of_points)
 }

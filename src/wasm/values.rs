@@ -5,6 +5,8 @@
 use crate::Reasons;
 #[cfg(feature = "js-meshes")]
 use crate::{Dimension, Mesh, system::memory, system::threads::Threads};
+#[cfg(any(feature = "js-files", feature = "js-points", feature = "js-point-session"))]
+use crate::LeftOut;
 use crate::{Error, Positions};
 #[cfg(feature = "js-meshes")]
 use js_sys::Uint32Array;
@@ -13,7 +15,8 @@ use js_sys::Uint32Array;
     feature = "js-untangle",
     feature = "js-audit",
     feature = "js-files",
-    feature = "js-points"
+    feature = "js-points",
+    feature = "js-point-session"
 ))]
 use js_sys::{Array, Object};
 use js_sys::{Float32Array, Float64Array};
@@ -74,12 +77,22 @@ pub fn out_of_memory() {
     feature = "js-untangle",
     feature = "js-audit",
     feature = "js-files",
-    feature = "js-points"
+    feature = "js-points",
+    feature = "js-point-session"
 ))]
 pub(crate) fn object<'a>(fields: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
     let entries: Array = fields.into_iter().map(|(name, value)| Array::of2(&name.into(), &value)).collect();
     // Fails only for values that are not a list of pairs.
     Object::from_entries(&entries).map_or_else(|error| error, JsValue::from)
+}
+
+/// The constraints that were left out.
+#[cfg(any(feature = "js-files", feature = "js-points", feature = "js-point-session"))]
+pub(crate) fn left_out_list(left_out: &[LeftOut]) -> JsValue {
+    let fields = |LeftOut { index, reason }: &LeftOut| {
+        object([("index", (*index as f64).into()), ("reason", reason.into())])
+    };
+    left_out.iter().map(fields).collect::<Array>().into()
 }
 
 /// The reasons with at least one edge.

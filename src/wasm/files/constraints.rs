@@ -2,9 +2,9 @@
 
 use super::mesh;
 use crate::session::locks;
-use crate::wasm::values::{JsPositions, object, thrown};
-use crate::{Constrained, Error, LeftOut, Options, constrained, regions};
-use js_sys::{Array, Uint8Array, Uint32Array};
+use crate::wasm::values::{JsPositions, left_out_list, object, thrown};
+use crate::{Constrained, Error, Options, constrained, regions};
+use js_sys::{Uint8Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -49,15 +49,12 @@ pub fn constrain(
     let result = work().map_err(thrown)?;
     let constraint_edges = Uint32Array::from(result.constraint_edges().as_flattened());
     let Constrained { mesh, locked_edges, flips, left_out, .. } = result;
-    let left_out = left_out.into_iter().map(|LeftOut { index, reason }| {
-        object([("index", (index as f64).into()), ("reason", reason.into())])
-    });
     Ok(object([
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("lockedEdges", Uint32Array::from(locked_edges.as_flattened()).into()),
         ("constraintEdges", constraint_edges.into()),
         ("flips", (flips as f64).into()),
-        ("leftOut", left_out.collect::<Array>().into()),
+        ("leftOut", left_out_list(&left_out)),
     ]))
 }
 
