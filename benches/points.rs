@@ -1,6 +1,7 @@
 //! Measures `triangulate`, on one thread and on one per core, next to the crates `delaunator` and `spade`, which have one
-//! thread: from an array of points to the triangles and their twins. `cargo bench -p benches --bench points -- [--runs N] [KIND…]`; `uniform 100000` is a kind with
-//! another number of points than a million.
+//! thread: from an array of points to the triangles and their twins.
+//! `cargo bench -p benches --bench points -- [--runs N] [KIND…]`; `uniform 100000` is a kind with another number of points
+//! than a million.
 //!
 //! The runs are interleaved; the figures are medians.
 
@@ -60,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let theirs: Vec<Point> = pairs.iter().map(|&[x, y]| Point { x, y }).collect();
         let vertices: Vec<Point2<f64>> = pairs.iter().map(|&[x, y]| Point2::new(x, y)).collect();
         let ours = |positions, threads| -> Work {
-            let options = PointOptions { threads: Some(threads) };
+            let options = PointOptions { threads: Some(threads), ..PointOptions::default() };
             Box::new(move || {
                 black_box(triangulate_with(positions, &options)?);
                 Ok(())

@@ -72,10 +72,11 @@ export class PointSession<Points = VertexArray | readonly number[] | readonly Ar
    * are does not count. The fewer points change, and the less far they go, the less time it takes.
    *
    * @throws {@link EdgeflipError} `position-count` for another number of points; `non-finite`, `ragged-array`,
-   * `invalid-input`, `too-large`; `freed`. Then nothing has changed.
+   * `invalid-input`, `too-large`, `freed`; exceptions of accessors pass through. Then nothing has changed.
    */
   update(points: Points): void {
-    this.#call((session) => session.update(coordinatesOf(points, this.#places, itselfOf)));
+    const coordinates = coordinatesOf(points, this.#places, itselfOf);
+    this.#call((session) => session.update(coordinates));
   }
 
   /**

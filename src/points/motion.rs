@@ -33,7 +33,11 @@ impl Net {
         }
         let points: Vec<DVec2> = (self.indices.iter().zip(&self.stars.points))
             .enumerate()
-            .map(|(vertex, (&index, &point))| if self.is_used(vertex as u32) { given[index as usize] } else { point })
+            .map(
+                |(vertex, (&index, &point))| {
+                    if self.is_used(vertex as u32) { given[index as usize] } else { point }
+                },
+            )
             .collect();
         if !self.lift(&points, &mut waiting) {
             return false;

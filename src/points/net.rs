@@ -3,7 +3,7 @@
 use super::changes::Removed;
 use super::columns::Columns;
 use super::halves::{Network, slots_of};
-use super::numbering::numbered;
+use super::numbering::{Numbered, numbered};
 use super::slots::{GHOST, next, prev};
 use super::stars::Stars;
 use super::walk::Place;
@@ -158,7 +158,9 @@ impl Net {
 
     /// Whether a place is only some edges away from the vertex where the last walk ended.
     fn is_close(&self, place: DVec2) -> bool {
-        let Some(&h) = self.stars.half_edges.get(self.last as usize).filter(|&&h| h != NONE) else { return false };
+        let Some(&h) = self.stars.half_edges.get(self.last as usize).filter(|&&h| h != NONE) else {
+            return false;
+        };
         let end = self.stars.slots.origin(next(h));
         end != GHOST && {
             let [p, q] = self.stars.points([self.last, end]);
@@ -166,17 +168,25 @@ impl Net {
         }
     }
 
-    /// The triangles and their twins by the caller's indices, all of which are below `count`.
-    pub(super) fn numbered(&self, count: usize, threads: &Threads) -> (Vec<u32>, Vec<u32>) {
-        threads.enter(|| numbered(&self.stars.slots.slots, &self.indices, count, threads))
+    /// The triangles by the caller's indices.
+    pub(super) fn triangles(&self, threads: &Threads) -> Vec<u32> {
+        threads.enter(|| self.numbered(threads).triangles)
+    }
+
+    /// The same, and the twins.
+    pub(super) fn with_twins(&self, threads: &Threads) -> (Vec<u32>, Vec<u32>) {
+        threads.enter(|| self.numbered(threads).with_twins(&self.stars.slots.slots, threads))
+    }
+
+    fn numbered(&self, threads: &Threads) -> Numbered {
+        numbered(&self.stars.slots.slots, &self.indices, self.vertices.len(), threads)
     }
 
     /// The hull from some vertex, counter-clockwise.
     pub(super) fn hull(&self) -> Vec<u32> {
         let slots = &self.stars.slots;
-        let is_ghost = |&slot: &u32| {
-            !self.is_free(slot) && slots.slots[slot as usize].corners[..3].contains(&GHOST)
-        };
+        let is_ghost =
+            |&slot: &u32| !self.is_free(slot) && slots.slots[slot as usize].corners[..3].contains(&GHOST);
         let Some(ghost) = (0..slots.slots.len() as u32).find(is_ghost) else { return Vec::new() };
         let to_symbolic = (4 * ghost..4 * ghost + 3).find(|&h| slots.origin(next(h)) == GHOST);
         let first = to_symbolic.unwrap_or(4 * ghost);

@@ -15,14 +15,18 @@ const FEWEST_INDICES: u32 = 10;
 /// A triangle by the caller's indices, from its smallest, and the half-edge that begins there.
 type Row = [u32; 4];
 
-/// The triangles of finished slots, and their twins. `indices` has the caller's index of each vertex; all are below
-/// `count`. A triangle begins with its smallest index, and they are sorted by their first index and then by their second.
-pub(super) fn numbered(
-    slots: &[Slot],
-    indices: &[u32],
-    count: usize,
-    threads: &Threads,
-) -> (Vec<u32>, Vec<u32>) {
+/// The triangles of finished slots by the caller's indices.
+pub(super) struct Numbered {
+    /// A triangle begins with its smallest index, and they are sorted by their first index and then by their second.
+    pub(super) triangles: Vec<u32>,
+    /// As long.
+    memory: Vec<u32>,
+    /// For each slot, 4 times the number of its triangle, and the corner that is now the first.
+    numbers: Vec<u32>,
+}
+
+/// Numbers the triangles. `indices` has the caller's index of each vertex; all are below `count`.
+pub(super) fn numbered(slots: &[Slot], indices: &[u32], count: usize, threads: &Threads) -> Numbered {
     // The triangles are in groups by their first index without its lowest bits.
     let shift = (usize::BITS - count.leading_zeros()).saturating_sub(MOST_GROUPS).max(FEWEST_INDICES);
     let corners = |slot: &Slot| {
@@ -41,10 +45,9 @@ pub(super) fn numbered(
     });
     let (starts, group_ends) = starts_of_lists(sizes);
     let total = group_ends.last().map_or(0, |&end| end as usize);
-    let [mut triangles, mut twins] = [(); 2].map(|()| threads.zeros(3 * total));
-    // The twins are not known yet, and the triangles are in their place until they are sorted.
+    let [mut triangles, mut memory] = [(); 2].map(|()| threads.zeros(3 * total));
     let mut half_edges = threads.zeros(total);
-    let (unsorted, words) = (shared(&mut twins).as_chunks::<3>().0, shared(&mut half_edges));
+    let (unsorted, words) = (shared(&mut memory).as_chunks::<3>().0, shared(&mut half_edges));
     threads.map_each(pieces.into_iter().zip(starts).collect(), |(piece, mut ends)| {
         for (slot, at) in (piece.start as u32..).zip(&slots[piece]) {
             if let Some([a, b, c]) = corners(at) {
@@ -61,10 +64,9 @@ pub(super) fn numbered(
             }
         }
     });
-    // For each slot, 4 times the number of its triangle, and the corner that is now the first.
     let mut numbers = threads.collect(slots.len(), |_| NONE);
     let words = shared(&mut numbers);
-    let (unsorted, _) = twins.as_chunks::<3>();
+    let (unsorted, _) = memory.as_chunks::<3>();
     let groups = groups(&group_ends, threads);
     let sorted = split(triangles.as_chunks_mut().0, &group_ends, &groups);
     threads.map_each(groups.into_iter().zip(sorted).collect(), |(groups, mut sorted)| {
@@ -82,21 +84,29 @@ pub(super) fn numbered(
             }
         }
     });
-    let (all, _) = shared(&mut twins).as_chunks::<3>();
-    threads.map(slots.len(), |piece| {
-        for (slot, &number) in slots[piece.clone()].iter().zip(&numbers[piece]) {
-            if number != NONE {
-                let turn = number as usize & 3;
-                for (corner, twin) in all[number as usize >> 2].iter().enumerate() {
-                    let h = slot.twins[AFTER[turn + corner]];
-                    let number = numbers[h as usize >> 2];
-                    let turned = AFTER[(3 + (h & 3) - (number & 3)) as usize] as u32;
-                    twin.set(if number == NONE { NONE } else { 3 * (number >> 2) + turned });
+    Numbered { triangles, memory, numbers }
+}
+
+impl Numbered {
+    /// The triangles, and for each half-edge its twin.
+    pub(super) fn with_twins(self, slots: &[Slot], threads: &Threads) -> (Vec<u32>, Vec<u32>) {
+        let Self { triangles, memory: mut twins, numbers } = self;
+        let (all, _) = shared(&mut twins).as_chunks::<3>();
+        threads.map(slots.len(), |piece| {
+            for (slot, &number) in slots[piece.clone()].iter().zip(&numbers[piece]) {
+                if number != NONE {
+                    let turn = number as usize & 3;
+                    for (corner, twin) in all[number as usize >> 2].iter().enumerate() {
+                        let h = slot.twins[AFTER[turn + corner]];
+                        let number = numbers[h as usize >> 2];
+                        let turned = AFTER[(3 + (h & 3) - (number & 3)) as usize] as u32;
+                        twin.set(if number == NONE { NONE } else { 3 * (number >> 2) + turned });
+                    }
                 }
             }
-        }
-    });
-    (triangles, twins)
+        });
+        (triangles, twins)
+    }
 }
 
 /// Corners modulo 3.

@@ -163,7 +163,7 @@ impl PointSession {
         self.find_net();
         let threads = self.pool();
         let Some(net) = &self.net else { return self.flat(&threads) };
-        let (triangles, twins) = net.numbered(self.len(), &threads);
+        let (triangles, twins) = net.with_twins(&threads);
         let (hull, duplicates) = (numbered_hull(net.hull(), &net.indices), net.duplicates());
         Triangulation { triangles, twins, hull, duplicates, ..Triangulation::default() }
     }
@@ -172,7 +172,7 @@ impl PointSession {
     pub fn triangles(&mut self) -> Vec<u32> {
         self.find_net();
         let threads = self.pool();
-        self.net.as_ref().map_or_else(Vec::new, |net| net.numbered(self.len(), &threads).0)
+        self.net.as_ref().map_or_else(Vec::new, |net| net.triangles(&threads))
     }
 
     /// The present hull: that of [`Self::triangulation`].

@@ -65,6 +65,17 @@ impl<S: DerefMut<Target = [Slot]>> Slots<S> {
         self.origin(prev(h))
     }
 
+    /// The ends of the edge of two half-edges, and then their apexes.
+    #[inline(always)]
+    pub(super) fn diamond(&self, h: u32, g: u32) -> [u32; 4] {
+        let corners = |h: u32| {
+            let (corners, corner) = (&self.slot(h).corners, h as usize & 3);
+            (corners[corner], corners[[2, 0, 1, 3][corner]])
+        };
+        let ((a, c), (b, d)) = (corners(h), corners(g));
+        [a, b, c, d]
+    }
+
     #[inline(always)]
     pub(super) fn twin(&self, h: u32) -> u32 {
         self.slot(h).twins[h as usize & 3]

@@ -5,6 +5,7 @@ use super::circle::{is_inside, is_left_turn};
 use super::slots::{GHOST, Slot, Slots, next, prev};
 use crate::NONE;
 use glam::DVec2;
+use std::array;
 use std::iter::successors;
 
 /// Every vertex of a slot has a star: either there is a triangle, or a ghost on each side of each edge of a line.
@@ -29,13 +30,16 @@ impl Stars {
         Self { points, slots: Slots { slots, first: 0 }, half_edges }
     }
 
+    #[inline(always)]
     pub(super) fn points<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
-        vertices.map(|vertex| self.points[vertex as usize])
+        // Not `map`, which is not always inlined.
+        array::from_fn(|i| self.points[vertices[i] as usize])
     }
 
     /// The corners of the triangle of a half-edge, from its beginning.
     pub(super) fn corners(&self, h: u32) -> [u32; 3] {
-        [h, next(h), prev(h)].map(|h| self.slots.origin(h))
+        let slots = &self.slots;
+        [slots.origin(h), slots.origin(next(h)), slots.origin(prev(h))]
     }
 
     /// The half-edges that begin at a vertex, counter-clockwise.
@@ -79,7 +83,7 @@ impl Stars {
             return true;
         }
         let g = slots.twin(h);
-        let corners @ [a, b, c, d] = [slots.origin(h), slots.origin(g), slots.apex(h), slots.apex(g)];
+        let corners @ [a, b, c, d] = slots.diamond(h, g);
         if a.max(b) == GHOST {
             // From the vertex before to the vertex after, along the hull.
             let [before, at, after] = if b == GHOST { [d, a, c] } else { [c, b, d] };
@@ -91,8 +95,7 @@ impl Stars {
 
     /// Flips the edge of the half-edges h, from a to b, and g. It then joins their apexes c and d.
     pub(super) fn flip(&mut self, h: u32, g: u32) {
-        let [a, b] = [h, g].map(|h| self.slots.origin(h));
-        let [c, d] = [h, g].map(|h| self.slots.apex(h));
+        let [a, b, c, d] = self.slots.diamond(h, g);
         let [[hn, hp], [gn, gp]] = [h, g].map(|h| [next(h), prev(h)]);
         let sides = [hn, hp, gn, gp].map(|side| (self.slots.twin(side), self.slots.is_locked(side)));
         let [bc, ca, ad, db] = sides;

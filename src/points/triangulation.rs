@@ -135,7 +135,8 @@ pub(super) fn triangulated(points: &Positions, options: &PointOptions, threads: 
         (constraint_edges, left_out) = brought_in(options, &mut stars, &indices, &duplicates);
         slots = stars.slots.slots;
     }
-    let (triangles, twins) = numbered(&slots, &indices, points.len() / 2, threads);
+    let numbered = numbered(&slots, &indices, points.len() / 2, threads);
+    let (triangles, twins) = numbered.with_twins(&slots, threads);
     let hull = if triangles.is_empty() {
         // There and back along the line.
         vertices.truncate(indices.len());

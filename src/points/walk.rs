@@ -52,7 +52,8 @@ impl Stars {
 
     /// Whether three points are a triangle, counter-clockwise.
     pub(super) fn is_positive(&self, corners: [u32; 3], points: &[DVec2]) -> bool {
-        let [a, b, c] = corners.map(|vertex| points[vertex as usize]);
-        is_left_turn(a, b, c)
+        let point = |vertex: u32| points[vertex as usize];
+        let [a, b, c] = corners;
+        is_left_turn(point(a), point(b), point(c))
     }
 }

@@ -1,12 +1,12 @@
 //! Conversions between Rust and JavaScript that the modules of the npm package share: meshes, plain objects and errors.
 //! The names are those of the package, such as `indices` for the triangles.
 
+#[cfg(any(feature = "js-files", feature = "js-points", feature = "js-point-session"))]
+use crate::LeftOut;
 #[cfg(any(feature = "js-session", feature = "js-audit"))]
 use crate::Reasons;
 #[cfg(feature = "js-meshes")]
 use crate::{Dimension, Mesh, system::memory, system::threads::Threads};
-#[cfg(any(feature = "js-files", feature = "js-points", feature = "js-point-session"))]
-use crate::LeftOut;
 use crate::{Error, Positions};
 #[cfg(feature = "js-meshes")]
 use js_sys::Uint32Array;

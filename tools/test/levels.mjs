@@ -326,6 +326,7 @@ function fullLevels() {
     ['js-audit'],
     ['js-files'],
     ['js-points'],
+    ['js-point-session'],
     ['js-points-threads', '--threads'],
     ['gpu,js', '--test', 'wasm', '--test', 'worker'],
   ];

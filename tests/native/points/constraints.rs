@@ -11,19 +11,20 @@ fn constrained(positions: &Positions, constraints: &[[u32; 2]], skips: bool) -> 
     triangulate_with(positions, &PointOptions { constraints, skips_constraints: skips, ..Default::default() })
 }
 
-/// What constraints should become: their edges, those that are left out, and for each of these the constraints that it
-/// crosses.
-fn expected(
-    points: &[Point],
-    duplicates: &[[u32; 2]],
-    constraints: &[[u32; 2]],
-) -> (Vec<[u32; 2]>, Vec<(usize, Vec<usize>)>) {
+/// What constraints should become.
+struct Expected {
+    edges: Vec<[u32; 2]>,
+    /// Those that are left out, and the constraints that each of them crosses.
+    left_out: Vec<(usize, Vec<usize>)>,
+}
+
+fn expected(points: &[Point], duplicates: &[[u32; 2]], constraints: &[[u32; 2]]) -> Expected {
     let sign = |x: BigInt| x.cmp(&BigInt::ZERO);
     let at = |v: u32| &points[v as usize];
     let side = |a: u32, b: u32, c: u32| sign(area(at(a), at(b), at(c)));
     let is_copy = |v: &u32| duplicates.iter().any(|[copy, _]| copy == v);
     let first = |v: u32| duplicates.iter().find(|[copy, _]| *copy == v).map_or(v, |[_, first]| *first);
-    let (mut edges, mut left_out): (Vec<(usize, [u32; 2])>, Vec<_>) = Default::default();
+    let (mut edges, mut left_out) = (Vec::<(usize, [u32; 2])>::new(), Vec::new());
     for (index, ends) in constraints.iter().enumerate() {
         let [a, b] = ends.map(first);
         let ahead = |v: u32| {
@@ -51,7 +52,7 @@ fn expected(
             left_out.push((index, crossed));
         }
     }
-    (edges.into_iter().map(|(_, edge)| edge).collect(), left_out)
+    Expected { edges: edges.into_iter().map(|(_, edge)| edge).collect(), left_out }
 }
 
 #[test]
@@ -75,9 +76,10 @@ fn constraints_come_in_as_the_oracle_defines_it() {
             let result = constrained(&positions, &constraints, true).unwrap();
             check(&positions, &result);
             let expected = expected(&integers, &result.duplicates, &constraints);
-            assert_eq!(result.constraint_edges, expected.0, "{name}, seed {seed}");
-            assert_eq!(result.left_out.len(), expected.1.len(), "{name}, seed {seed}");
-            for (LeftOut { index, reason }, (left, crossed)) in result.left_out.iter().zip(&expected.1) {
+            assert_eq!(result.constraint_edges, expected.edges, "{name}, seed {seed}");
+            assert_eq!(result.left_out.len(), expected.left_out.len(), "{name}, seed {seed}");
+            for (LeftOut { index, reason }, (left, crossed)) in result.left_out.iter().zip(&expected.left_out)
+            {
                 let [a, b] = constraints[*index];
                 let says = |other: &usize| {
                     let [c, d] = constraints[*other];
@@ -92,7 +94,7 @@ fn constraints_come_in_as_the_oracle_defines_it() {
             let mut index = 0;
             those.retain(|_| {
                 index += 1;
-                !expected.1.iter().any(|(left, _)| left + 1 == index)
+                !expected.left_out.iter().any(|(left, _)| left + 1 == index)
             });
             those.reverse();
             those.iter_mut().for_each(|ends| ends.reverse());

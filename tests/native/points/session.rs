@@ -177,7 +177,10 @@ fn calls_that_are_refused_change_nothing() {
     let mut pair = Pair::new(points(KINDS[0].1, 100, 1));
     let session = &mut pair.session;
     assert!(matches!(session.add([0.0, f64::NAN]), Err(Error::NonFinite { vertex: 100, axis: 'y', .. })));
-    assert!(matches!(session.move_to(7, [f64::INFINITY, 0.0]), Err(Error::NonFinite { vertex: 7, axis: 'x', .. })));
+    assert!(matches!(
+        session.move_to(7, [f64::INFINITY, 0.0]),
+        Err(Error::NonFinite { vertex: 7, axis: 'x', .. })
+    ));
     assert!(matches!(session.move_to(100, [0.0; 2]), Err(Error::Option { option: "index", .. })));
     let mut numbers = vec![0.5; 200];
     numbers[91] = f64::NEG_INFINITY;
