@@ -3,7 +3,7 @@
 import { fromModule } from './error.js';
 import { type Functions, Remote, type Script, type Sending, startThread, type Thread } from './remote.js';
 
-/** What every thread can do at first. */
+/** The call that makes a worker the first of a pool. */
 type Start = { start(module: WebAssembly.Module, count: number): WebAssembly.Memory };
 
 /** The threads that work together. */
