@@ -1,5 +1,6 @@
 // Points to triangles, next to delaunator: `node benches/points.mjs`. On one thread of Node, from the caller's arrays to
-// arrays of the result; prints ratios and milliseconds, medians of runs that alternate. Uses the existing dist/.
+// arrays of the result; prints ratios and milliseconds, medians of runs that alternate. A second table has the sets that
+// are large enough for several threads: on all cores, next to one thread. Uses the existing dist/.
 // `node benches/points.mjs 1000 1000000` takes these numbers of points.
 
 import { spawnSync } from 'node:child_process';
@@ -48,18 +49,29 @@ const CONTENDERS = {
 const median = (numbers) => numbers.toSorted((a, b) => a - b)[numbers.length >> 1];
 
 /** Times of calls that alternate. A small set is called so often that the clock is fine enough. */
-async function warm(points) {
+async function alternating(work, points) {
   const calls = Math.ceil(100_000 / points.length);
-  const times = { ours: [], delaunator: [] };
-  const work = { ours: await CONTENDERS.ours(), delaunator: await CONTENDERS.delaunator() };
+  const times = Object.fromEntries(Object.keys(work).map((name) => [name, []]));
   for (let run = 0; run < WARM + RUNS; run++) {
     for (const [name, call] of Object.entries(work)) {
       const start = performance.now();
-      for (let i = 0; i < calls; i++) call(points);
-      times[name].push((performance.now() - start) / calls);
+      for (let i = 0; i < calls; i++) await call(points);
+      if (run >= WARM) times[name].push((performance.now() - start) / calls);
     }
   }
-  return { ours: times.ours.slice(WARM), delaunator: times.delaunator.slice(WARM) };
+  return times;
+}
+
+const warm = async (points) =>
+  alternating({ ours: await CONTENDERS.ours(), delaunator: await CONTENDERS.delaunator() }, points);
+
+/** Times on all cores and on one thread, and the number of threads. */
+async function onThreads(points) {
+  const { init, triangulate } = await import('edgeflip/points');
+  await init();
+  const { threads } = await triangulate(points);
+  const work = { all: (points) => triangulate(points), one: (points) => triangulate(points, { threads: 1 }) };
+  return { threads, times: await alternating(work, points) };
 }
 
 /** Times of first calls, each in a process of its own, after its scripts are loaded. That of ours loads the module. */
@@ -76,11 +88,12 @@ function first(kind, count) {
   return times;
 }
 
-const row = ({ ours, delaunator }) => [
-  median(ours.map((time, i) => time / delaunator[i])).toFixed(2),
-  median(ours).toFixed(2),
-  median(delaunator).toFixed(2),
-];
+/** The ratio of two lists of times, and both. */
+function row(times) {
+  const [first, second] = Object.values(times);
+  const ratio = median(first.map((time, i) => time / second[i]));
+  return [ratio, median(first), median(second)].map((number) => number.toFixed(2));
+}
 
 if (process.argv[2] === 'first') {
   const [name, kind, count] = process.argv.slice(3);
@@ -91,14 +104,24 @@ if (process.argv[2] === 'first') {
   console.log(performance.now() - start);
 } else {
   const given = process.argv.slice(2).map(Number);
+  const counts = given.length > 0 ? given : [1000, 10_000, 100_000, 1_000_000];
   console.log(
     '| points | warm: ours / delaunator | ours, ms | delaunator, ms | first call: ours / delaunator | ms | ms |',
   );
   console.log('|---|---:|---:|---:|---:|---:|---:|');
-  for (const count of given.length > 0 ? given : [1000, 10_000, 100_000, 1_000_000]) {
+  for (const count of counts) {
     for (const kind of Object.keys(KINDS)) {
       const cells = [...row(await warm(pointsOf(kind, count))), ...row(first(kind, count))];
       console.log(`| ${count.toLocaleString('en')} ${kind} | ${cells.join(' | ')} |`);
+    }
+  }
+  console.log('\n| points | threads | warm: threads / one thread | threads, ms | one thread, ms |');
+  console.log('|---|---:|---:|---:|---:|');
+  for (const count of counts) {
+    for (const kind of Object.keys(KINDS)) {
+      const { threads, times } = await onThreads(pointsOf(kind, count));
+      if (threads > 1)
+        console.log(`| ${count.toLocaleString('en')} ${kind} | ${[threads, ...row(times)].join(' | ')} |`);
     }
   }
 }

@@ -89,8 +89,8 @@ export async function triangulate(points: unknown, options: unknown = {}): Promi
 }
 
 /**
- * As how many triangles of a mesh so many coordinates count. The first call starts the workers, which pays from about
- * 131,072 points on. Each number of threads has workers of its own: a power of two keeps it the same for similar sets.
+ * As how many triangles of a mesh so many coordinates count. Fewer points than 131,072 take less time than it takes to
+ * start a worker. Each number of threads has workers of its own: a power of two keeps it the same for similar sets.
  */
 function workOf(coordinates: number): number {
   return 2 ** Math.floor(Math.log2(coordinates / 4));

@@ -3,19 +3,17 @@
 import { fromModule } from './error.js';
 import { type Functions, Remote, type Script, type Sending, startThread, type Thread } from './remote.js';
 
-/** What every thread can do at first. */
+/** The call that makes a worker the first of a pool. */
 type Start = { start(module: WebAssembly.Module, count: number): WebAssembly.Memory };
 
 /** The threads that work together. */
 export class Pool<F extends Functions> {
-  readonly #script: Script;
   readonly #first: Remote<F>;
   readonly #others: Thread[] = [];
   readonly #onEnd: () => void;
   #hasEnded = false;
 
   private constructor(script: Script, onEnd: () => void) {
-    this.#script = script;
     this.#onEnd = onEnd;
     this.#first = new Remote(script, (message) => this.#fail(message ?? 'a worker could not be loaded'));
   }
@@ -29,8 +27,10 @@ export class Pool<F extends Functions> {
   ): Promise<Threads<F>> {
     const pool = new Pool<F>(script, onEnd);
     try {
+      // All load at the same time.
+      for (let i = 1; i < count; i++) pool.#add(script);
       const memory = await (pool as unknown as Pool<Start>).call('start', [module, count]);
-      for (let i = 1; i < count; i++) pool.#add(module, memory);
+      for (const thread of pool.#others) thread.post({ id: -1, method: 'work', args: [module, memory] }, []);
       return [pool, memory];
     } catch (thrown) {
       pool.#fail(String(thrown));
@@ -47,14 +47,12 @@ export class Pool<F extends Functions> {
     return this.#first.call(method, args, sending);
   }
 
-  #add(module: WebAssembly.Module, memory: WebAssembly.Memory): void {
+  #add(script: Script): void {
     const onError = (message?: string) => {
       // If a worker cannot be loaded, the remaining threads do its work.
       if (message !== undefined) this.#fail(message);
     };
-    const thread = startThread(this.#script, () => undefined, onError);
-    this.#others.push(thread);
-    thread.post({ id: -1, method: 'work', args: [module, memory] }, []);
+    this.#others.push(startThread(script, () => undefined, onError));
   }
 
   /** Ends all threads: after a crash of one, their shared memory may be corrupt. */

@@ -80,15 +80,21 @@ test('esbuild puts the module of edgeflip/points into the script, as bytes', asy
   writeFileSync(
     source,
     `import bytes from 'edgeflip/points.wasm';
-    import { init, triangulateSync } from 'edgeflip/points';
+    import { init, triangulate, triangulateSync } from 'edgeflip/points';
     await init({ points: bytes });
     export const triangles = triangulateSync([0, 0, 1, 0, 0, 1]).triangles.join();
+    export const many = await triangulate(Float64Array.from({ length: 2 ** 18 }, Math.random), { threads: 2 });
     `,
   );
   const loader = { '.wasm': 'binary' };
   await esbuild.build({ entryPoints: [source], outfile: file, bundle: true, format: 'esm', target: 'es2022', loader });
-  const { triangles } = await import(pathToFileURL(file));
+  const { triangles, many } = await import(pathToFileURL(file));
   assert.equal(triangles, '0,1,2');
+  assert.deepEqual([many.threads, many.triangles.length > 2 ** 18], [1, true]);
+  assert.match(
+    many.hint,
+    /^The points were triangulated on one thread: the workers could not be started \(edgeflip_points_th/,
+  );
 });
 
 test('without edgeflip/inline and without the file of the module, the error says what to do', async () => {

@@ -133,6 +133,8 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
   ])
     assert.ok(table.includes(`\n| \`${entry}\` | ${size} KB`), `${entry}: ${size} KB`);
   assert.ok(table.includes(`loads ${untangle} KB more`), `the repair: ${untangle} KB`);
+  const [threads, alone] = ['_threads', ''].map((end) => sizeOf(`edgeflip_points${end}_bg.wasm`));
+  assert.ok(table.includes(`load ${threads} KB of WebAssembly instead of the ${alone} KB`), `points: ${threads} KB`);
   const [first] = await page.locator('.package-below li').allTextContents();
   const oldest = first.replace(/, or newer\.$/, '');
   assert.match(oldest, /^Chrome .*Safari/);
