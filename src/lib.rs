@@ -52,6 +52,7 @@ pub use mesh::{MAX_TRIANGLES, Mesh};
 pub use phases::reason::{Reason, Reasons};
 pub use points::options::PointOptions;
 pub use points::triangulation::{Triangulation, triangulate, triangulate_with};
+pub use points::voronoi::Voronoi;
 pub use predicates::cos_degrees;
 pub use prepare::constraints::{Constrained, LeftOut, constrained};
 pub use prepare::regions::{Regions, regions};

@@ -6,12 +6,12 @@ use std::array;
 use std::cmp::Ordering;
 
 /// Unit roundoff of f64.
-const EPSILON: f64 = f64::EPSILON / 2.0;
+pub(super) const EPSILON: f64 = f64::EPSILON / 2.0;
 
 /// A generous bound for the error that underflow adds to a filter. A product that underflows is off by at most η =
 /// 2^-1075; sums and differences do not underflow. If anything overflows, the bound of the filter is infinite or NaN,
 /// and the filter decides nothing.
-const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such
 /// vectors is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
@@ -272,6 +272,6 @@ fn in_circle<R: Ring>(differences: &[R; 8]) -> Ordering {
 }
 
 #[inline]
-fn sign(x: f64) -> Ordering {
+pub(super) fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }

@@ -1,0 +1,129 @@
+//! The box of a Voronoi diagram. All decisions are those for a box whose sides are a little further in, those of x by
+//! infinitely more than those of y: then no circumcentre is on a side and no corner is as near to one point as to
+//! another, so the decisions fit each other, and what only touches the box is outside.
+//!
+//! Sides have numbers, counter-clockwise from the bottom; side k goes from corner k to the next. An outcode has a bit for
+//! each side: whether a point is beyond it.
+
+use crate::Error;
+use crate::error::number;
+use crate::predicates::{Line, compare_circumcentre, crossing, nearer};
+use glam::DVec2;
+use std::array;
+
+/// The sides that are lines of one x.
+const RIGHT: usize = 1;
+const LEFT: usize = 3;
+
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    /// The coordinate of each side.
+    sides: [f64; 4],
+}
+
+impl Frame {
+    /// # Errors
+    /// [`Error::Option`].
+    pub(super) fn new(bounds: [f64; 4]) -> Result<Self, Error> {
+        // Adding 0 turns -0 into 0.
+        let [left, bottom, right, top] = bounds.map(|x| x + 0.0);
+        if bounds.iter().all(|x| x.is_finite()) && left < right && bottom < top {
+            return Ok(Self { sides: [bottom, right, top, left] });
+        }
+        let text = bounds.map(number).join(", ");
+        let message = format!(
+            "[{text}] is not a box: give finite [xmin, ymin, xmax, ymax] with xmin < xmax, ymin < ymax"
+        );
+        Err(Error::Option { option: "bounds", message })
+    }
+
+    pub(super) fn line(&self, side: usize) -> Line {
+        Line { axis: if side == LEFT || side == RIGHT { 0 } else { 1 }, at: self.sides[side] }
+    }
+
+    pub(super) fn corner(&self, corner: usize) -> DVec2 {
+        let [bottom, right, top, left] = self.sides;
+        DVec2::new(
+            if corner == 1 || corner == 2 { right } else { left },
+            if corner < 2 { bottom } else { top },
+        )
+    }
+
+    /// The outcode of a circumcentre. A rounded coordinate that is not on a side is on the same side as the exact one.
+    #[inline(always)]
+    pub(super) fn outcode(&self, centre: DVec2, triangle: impl Fn() -> [DVec2; 3]) -> u8 {
+        let [bottom, right, top, left] = self.sides;
+        let is_on = centre.x == left || centre.x == right || centre.y == bottom || centre.y == top;
+        if is_on {
+            let [a, b, c] = triangle();
+            let beyond = |side: usize| {
+                let order = compare_circumcentre(a, b, c, self.line(side));
+                u8::from(if side == RIGHT || side == 2 { order.is_ge() } else { order.is_le() }) << side
+            };
+            return (0..4).map(beyond).sum();
+        }
+        let beyond = [centre.y < bottom, centre.x > right, centre.y > top, centre.x < left];
+        (0..4).map(|side| u8::from(beyond[side]) << side).sum()
+    }
+
+    /// Whether a corner is nearer to `p` than to `q`.
+    pub(super) fn has_corner(&self, corner: usize, p: DVec2, q: DVec2) -> bool {
+        let order = nearer(p, q, self.corner(corner));
+        if order.is_ne() {
+            return order.is_lt();
+        }
+        // The corner is a little further in.
+        let is_right = corner == 1 || corner == 2;
+        if p.x == q.x { (q.y < p.y) == (corner < 2) } else { (q.x < p.x) != is_right }
+    }
+
+    /// Where the edge between the cells of `p` and `q` is in the box, seen in the direction that has `p` on the left. It
+    /// goes from one circumcentre to another, which have these outcodes; `None` is infinitely far.
+    #[inline(always)]
+    pub(super) fn cut(
+        &self,
+        [from, to]: [Option<u8>; 2],
+        points: impl FnOnce() -> [DVec2; 2],
+    ) -> Option<Cut> {
+        if let (Some(from), Some(to)) = (from, to) {
+            if from | to == 0 {
+                return Some(Cut::default());
+            }
+            if from & to != 0 {
+                return None;
+            }
+        }
+        self.cut_line([from, to], points())
+    }
+
+    fn cut_line(&self, [from, to]: [Option<u8>; 2], [p, q]: [DVec2; 2]) -> Option<Cut> {
+        let is_of_p: [bool; 4] = array::from_fn(|corner| self.has_corner(corner, p, q));
+        let side_where =
+            |first: bool| (0..4).find(|&side| is_of_p[side] == first && is_of_p[(side + 1) % 4] != first);
+        let (entry, exit) = (side_where(true)?, side_where(false)?);
+        // The sides into whose half-planes the line goes, in the direction of q - p turned to the left.
+        let [right, up] = [p.y > q.y, q.x > p.x];
+        let [left, down] = [p.y < q.y, q.x < p.x];
+        let mask = |sides: [bool; 4]| (0..4).map(|side| u8::from(sides[side]) << side).sum::<u8>();
+        let (entered, left_behind) = (mask([up, left, down, right]), mask([down, right, up, left]));
+        let is_before = from.is_none_or(|from| from & entered != 0);
+        let is_after = to.is_none_or(|to| to & left_behind != 0);
+        (is_before || from == Some(0)).then_some(())?;
+        (is_after || to == Some(0)).then_some(())?;
+        Some(Cut { entry: is_before.then_some(entry), exit: is_after.then_some(exit) })
+    }
+
+    /// Where the edge between two cells meets a side.
+    pub(super) fn crossing(&self, p: DVec2, q: DVec2, side: usize) -> DVec2 {
+        let line = self.line(side);
+        let other = crossing(p, q, line);
+        if line.axis == 0 { DVec2::new(line.at, other) } else { DVec2::new(other, line.at) }
+    }
+}
+
+/// The part of an edge in the box. Without an entry it begins with a circumcentre, without an exit it ends with one.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Cut {
+    pub(super) entry: Option<usize>,
+    pub(super) exit: Option<usize>,
+}

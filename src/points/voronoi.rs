@@ -1,0 +1,94 @@
+//! `Triangulation::voronoi`: for each point, the part of a box that is nearer to it than to the others.
+
+use super::cells::Cells;
+use super::frame::Frame;
+use super::verify::corners_of;
+use crate::predicates::circumcentre;
+use crate::system::memory;
+use crate::system::threads::Threads;
+use crate::{Dimension, Error, Positions, Triangulation};
+
+/// The most bytes that a point takes at a time: two circumcentres (32), their outcodes (2), a half-edge (4), the start of
+/// the cell (4), and six corners (96) in a list that may have room for as many again.
+const BYTES_PER_POINT: u64 = 234;
+
+/// The Voronoi diagram of points in a box, from [`Triangulation::voronoi`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Voronoi {
+    /// x and y of the circumcentre of each triangle. It may be far away, and infinite if it is beyond the range of f64.
+    pub circumcentres: Vec<f64>,
+    /// The cell of point i has the corners from `starts[i]` to before `starts[i + 1]`. One more than there are points.
+    pub starts: Vec<u32>,
+    /// x and y of the corners of the cells. Those of a cell are counter-clockwise, all different, and the last is not the
+    /// first again.
+    pub corners: Vec<f64>,
+}
+
+impl Voronoi {
+    /// The corners of the cell of a point. There are none if the point equals another with a smaller index, if the cell
+    /// does not reach into the box, or if what it has there has no area in 64-bit floats.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn cell(&self, point: usize) -> &[[f64; 2]] {
+        let [start, end] = [point, point + 1].map(|i| self.starts[i] as usize);
+        &self.corners.as_chunks().0[start..end]
+    }
+}
+
+impl Triangulation {
+    /// The Voronoi diagram of the points of this triangulation in a box: `[xmin, ymin, xmax, ymax]`.
+    ///
+    /// The cells fill the box. Each corner of a cell is a circumcentre, a corner of the box, or where two cells meet on
+    /// its side: the exact coordinates, rounded once. So the cells that have a corner in common have it with the same
+    /// bits. Which corners a cell has is decided without rounding. The time is linear.
+    ///
+    /// ```
+    /// use edgeflip::{Positions, triangulate};
+    ///
+    /// let points = Positions::from(vec![1.0, 1.0, 3.0, 1.0, 2.0, 4.0]);
+    /// let voronoi = triangulate(&points)?.voronoi(&points, [0.0, 0.0, 4.0, 5.0])?;
+    /// assert_eq!(voronoi.circumcentres, [2.0, 7.0 / 3.0]);
+    /// assert_eq!(voronoi.cell(0), [[2.0, 7.0 / 3.0], [0.0, 3.0], [0.0, 0.0], [2.0, 0.0]]);
+    /// # Ok::<(), edgeflip::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Option`] about `bounds` if they are not finite or the box has no area, and about `triangulation` if this
+    /// is not the Delaunay triangulation of the points; [`Error::RaggedArray`] for a number of coordinates or of indices
+    /// that does not fit, [`Error::IndexOutOfRange`], [`Error::NonFinite`], [`Error::OutOfMemory`] and
+    /// [`Error::TooLarge`].
+    pub fn voronoi(&self, points: &Positions, bounds: [f64; 4]) -> Result<Voronoi, Error> {
+        let (length, stride) = (points.len(), Dimension::Two.stride());
+        if length % stride != 0 {
+            return Err(Error::RaggedArray { array: "positions", length, stride });
+        }
+        let frame = Frame::new(bounds)?;
+        memory::check(BYTES_PER_POINT * (length / stride) as u64)?;
+        let threads = Threads::new(None, self.triangles.len() / 3)?;
+        points.refuse_non_finite(Dimension::Two, &threads)?;
+        let first = corners_of(self, points, &threads)?;
+        threads.enter(|| self.cells(points, frame, &first, &threads))
+    }
+
+    fn cells(
+        &self,
+        points: &Positions,
+        frame: Frame,
+        first: &[u32],
+        threads: &Threads,
+    ) -> Result<Voronoi, Error> {
+        let rows = self.triangles.as_chunks().0;
+        let centres = threads.collect(rows.len(), |triangle| {
+            let [a, b, c] = points.points2(rows[triangle]);
+            circumcentre(a, b, c)
+        });
+        let outcodes = threads.collect(rows.len(), |triangle| {
+            frame.outcode(centres[triangle], || points.points2(rows[triangle]))
+        });
+        let cells = Cells { triangulation: self, points, frame, centres: &centres, outcodes: &outcodes };
+        let (starts, corners) = cells.all(first, threads)?;
+        let circumcentres = Vec::from_iter(centres.iter().map(|centre| centre.to_array())).into_flattened();
+        Ok(Voronoi { circumcentres, starts, corners: corners.into_flattened() })
+    }
+}

@@ -1,0 +1,131 @@
+//! Where bisectors of points in the plane meet each other and lines along the axes. Each coordinate is the exact one,
+//! rounded once: equal coordinates have equal bits, and the order of others never turns over.
+
+use super::exact::{Differences, Ring, Unbounded, quotient};
+use super::plane::{EPSILON, UNDERFLOW, sign};
+use super::rounded::{Double, Polynomial, rounded, scale_of};
+use glam::DVec2;
+use std::array;
+use std::cmp::Ordering;
+
+/// A line of all points whose x, on axis 0, or y, on axis 1, is a number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub(crate) axis: usize,
+    pub(crate) at: f64,
+}
+
+/// The circumcentre of (a, b, c), which is counter-clockwise. A coordinate beyond the range of f64 is infinite.
+#[inline(always)]
+pub(crate) fn circumcentre(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {
+    let quick = || {
+        let [p, q] = [b, c].map(|v| [Double::difference(v.x, a.x), Double::difference(v.y, a.y)]);
+        let [to_one, unit] = scale_of([p[0].abs(), p[1].abs(), q[0].abs(), q[1].abs()])?;
+        let [[px, py], [qx, qy]] = [p, q].map(|v| v.map(|x| x.scaled(to_one)));
+        let cross = |[ax, ay]: [Double; 2], [bx, by]: [Double; 2]| Polynomial {
+            value: ax * by - ay * bx,
+            size: ax.abs() * by.abs() + ay.abs() * bx.abs(),
+        };
+        let squares = [px * px + py * py, qx * qx + qy * qy];
+        let area = cross([px, py], [qx, qy]);
+        let doubled = Polynomial { value: area.value.scaled(2.0), size: 2.0 * area.size };
+        let x = rounded(a.x, cross(squares, [py, qy]), doubled, unit)?;
+        let y = rounded(a.y, cross([px, qx], squares), doubled, unit)?;
+        Some(DVec2::new(x, y))
+    };
+    // Adding 0 turns -0 into 0.
+    quick().unwrap_or_else(|| exact_circumcentre(a, b, c)) + DVec2::ZERO
+}
+
+#[cold]
+fn exact_circumcentre(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {
+    let [x, y] = array::from_fn(|axis| centre_from(a, b, c, Line { axis, at: 0.0 }).rounded());
+    DVec2::new(x, y)
+}
+
+/// Where the circumcentre of (a, b, c), which is counter-clockwise, is on the axis, compared with the line.
+#[cold]
+pub(crate) fn compare_circumcentre(a: DVec2, b: DVec2, c: DVec2, line: Line) -> Ordering {
+    centre_from(a, b, c, line).numerator.sign()
+}
+
+/// Where the bisector of two points meets a line: the coordinate on the other axis. The points differ on that axis.
+pub(crate) fn crossing(p: DVec2, q: DVec2, Line { axis, at }: Line) -> f64 {
+    let [p, q] = [p, q].map(|v| if axis == 0 { [v.x, v.y] } else { [v.y, v.x] });
+    // The vectors d = q - p and w = (v - p) + (v - q) are at right angles for v on the bisector.
+    let quick = || {
+        let [across, along] = [0, 1].map(|i| Double::difference(q[i], p[i]));
+        let ends = [p, q].map(|v| Double::difference(at, v[0]));
+        let [to_one, unit] = scale_of([across.abs(), along.abs(), ends[0].abs(), ends[1].abs()])?;
+        let [across, along, first, second] = [across, along, ends[0], ends[1]].map(|x| x.scaled(to_one));
+        let numerator = Polynomial {
+            value: along * along - across * (first + second),
+            size: along.abs() * along.abs() + across.abs() * (first.abs() + second.abs()),
+        };
+        let doubled = Polynomial { value: along.scaled(2.0), size: 2.0 * along.abs() };
+        rounded(p[1], numerator, doubled, unit)
+    };
+    quick().unwrap_or_else(|| exact_crossing(p, q, at)) + 0.0
+}
+
+#[cold]
+fn exact_crossing(p: [f64; 2], q: [f64; 2], at: f64) -> f64 {
+    let pairs = [(q[0], p[0]), (q[1], p[1]), (at, p[0]), (at, q[0]), (p[1], 0.0)];
+    let differences = Differences::new(pairs);
+    let [across, along, first, second, base] = differences.integers::<Unbounded>();
+    let denominator = along.add(&along);
+    let numerator = along.mul(&along).sub(&across.mul(&first.add(&second)));
+    let numerator = numerator.add(&base.mul(&denominator));
+    Ratio { numerator, denominator, exponent: differences.unit }.rounded()
+}
+
+/// The distance of `v` from `p`, compared with that from `q`.
+pub(crate) fn nearer(p: DVec2, q: DVec2, v: DVec2) -> Ordering {
+    let (d, first, second) = (q - p, v - p, v - q);
+    let value = d.dot(first + second);
+    // As in `in_circle_sign`, with five roundings.
+    let size = d.abs().dot(first.abs() + second.abs());
+    if value.abs() > 8.0 * EPSILON * size + UNDERFLOW {
+        return sign(value);
+    }
+    exactly_nearer(p, q, v)
+}
+
+#[cold]
+fn exactly_nearer(p: DVec2, q: DVec2, v: DVec2) -> Ordering {
+    let pairs = [(q, p), (v, p), (v, q)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
+    let differences =
+        Differences::new([pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1], pairs[2][0], pairs[2][1]]);
+    let [dx, dy, px, py, qx, qy] = differences.integers::<Unbounded>();
+    dx.mul(&px.add(&qx)).add(&dy.mul(&py.add(&qy))).sign()
+}
+
+/// `numerator / denominator * 2^exponent`.
+struct Ratio {
+    numerator: Unbounded,
+    denominator: Unbounded,
+    exponent: i32,
+}
+
+impl Ratio {
+    fn rounded(&self) -> f64 {
+        quotient(&self.numerator, &self.denominator, self.exponent)
+    }
+}
+
+/// Where the circumcentre is, from the line. The denominator is positive.
+fn centre_from(a: DVec2, b: DVec2, c: DVec2, Line { axis, at }: Line) -> Ratio {
+    let differences = Differences::new([(b.x, a.x), (b.y, a.y), (c.x, a.x), (c.y, a.y), (a[axis], at)]);
+    let [px, py, qx, qy, base] = differences.integers::<Unbounded>();
+    let cross = |ax: &Unbounded, ay: &Unbounded, bx: &Unbounded, by: &Unbounded| ax.mul(by).sub(&ay.mul(bx));
+    let squares = [(&px, &py), (&qx, &qy)].map(|(x, y)| x.mul(x).add(&y.mul(y)));
+    let area = cross(&px, &py, &qx, &qy);
+    let denominator = area.add(&area);
+    let from_a = if axis == 0 {
+        cross(&squares[0], &squares[1], &py, &qy)
+    } else {
+        cross(&px, &qx, &squares[0], &squares[1])
+    };
+    let numerator = from_a.add(&base.mul(&denominator));
+    Ratio { numerator, denominator, exponent: differences.unit }
+}
