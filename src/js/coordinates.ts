@@ -25,13 +25,19 @@ export interface Accessors<P> {
 const OPTIONS = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: true, x: true, y: true });
 
 /**
- * The coordinates of points. Every conversion is exact. `hold` copies an array of the caller or returns it.
+ * The coordinates of points. Every conversion is exact. `hold` copies an array of the caller or returns it. Other options
+ * may have the names in `more`.
  *
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`, `ragged-array`, `too-large`. Exceptions of accessors
  * pass through.
  */
-export function coordinatesOf(points: unknown, options: unknown, hold: Hold): Float32Array | Float64Array {
-  const { x, y, stride, offset } = placesOf(options);
+export function coordinatesOf(
+  points: unknown,
+  options: unknown,
+  hold: Hold,
+  more: readonly string[] = [],
+): Float32Array | Float64Array {
+  const { x, y, stride, offset } = placesOf(options, more);
   const view = viewOf(points, NUMBERS, 'points');
   // An array has the length 0 if its buffer has shrunk. This throws for it.
   if (view?.length === 0) read('points', () => Uint8Array.prototype.at.call(points as Uint8Array, 0));
@@ -49,9 +55,9 @@ export function coordinatesOf(points: unknown, options: unknown, hold: Hold): Fl
 }
 
 /** Checks the options. */
-function placesOf(options: unknown): Spacing & Partial<Accessors<unknown>> {
+function placesOf(options: unknown, more: readonly string[]): Spacing & Partial<Accessors<unknown>> {
   return read('the options', () => {
-    const given = optionsOf(options, OPTIONS) as Spacing & Partial<Accessors<unknown>>;
+    const given = optionsOf(options, [...OPTIONS, ...more]) as Spacing & Partial<Accessors<unknown>>;
     const { stride, offset } = given;
     const [x, y] = [functionOf(given.x, 'x'), functionOf(given.y, 'y')];
     if (stride !== undefined && !(isWhole(stride) && stride >= 2)) {

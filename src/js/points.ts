@@ -1,5 +1,5 @@
 /**
- * Triangulates points in the plane, in a WebAssembly module that is loaded on first use.
+ * Triangulates points in the plane and makes their Voronoi diagram, in a WebAssembly module that is loaded on first use.
  *
  * ```ts
  * import { triangulate } from 'edgeflip/points';
@@ -9,17 +9,19 @@
  * @packageDocumentation
  */
 
-import initModule, * as wasm from './wasm/edgeflip_points.js';
+import * as wasm from './wasm/edgeflip_points.js';
 import { type Accessors, coordinatesOf, type Spacing } from './coordinates.js';
-import { EdgeflipError, fromModule } from './error.js';
+import { fromModule } from './error.js';
 import { copyOf, itselfOf } from './given.js';
-import { initOf, loader } from './module.js';
+import { checkLoaded, isLoaded, load } from './points-module.js';
 import type { VertexArray } from './types.js';
 
 export type { Accessors, Spacing } from './coordinates.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { ModuleSource, PointsSources } from './module.js';
-export type { VertexArray } from './types.js';
+export { init } from './points-module.js';
+export type { IndexArray, VertexArray } from './types.js';
+export { type Bounds, type TriangulationArrays, type Voronoi, voronoi, voronoiSync } from './voronoi.js';
 
 /** A Delaunay triangulation of points in the plane. */
 export interface Triangulation {
@@ -43,27 +45,6 @@ export interface Triangulation {
   /** Why there is no triangle: a sentence for a developer. `undefined` if there are triangles. */
   hint: string | undefined;
 }
-
-let isLoaded = false;
-
-const load = loader(
-  async (source) => {
-    await initModule(source);
-    isLoaded = true;
-  },
-  'edgeflip_points_bg.wasm',
-  () => new URL('./wasm/edgeflip_points_bg.wasm', import.meta.url),
-);
-
-/**
- * Loads the WebAssembly module of this entry. {@link triangulate} loads it by itself; {@link triangulateSync} needs this
- * call before. Pass a source if the module is not in `wasm/` next to this file.
- *
- * The module is loaded once; later sources are ignored. After a failure, the next call tries again.
- *
- * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
- */
-export const init = initOf('points', { points: load });
 
 /**
  * The Delaunay triangulation of points in the plane.
@@ -96,20 +77,20 @@ export async function triangulate<P>(
   options: Accessors<P>,
 ): Promise<Triangulation>;
 export async function triangulate(points: unknown, options: unknown = {}): Promise<Triangulation> {
-  const coordinates = coordinatesOf(points, options, isLoaded ? itselfOf : copyOf);
-  if (!isLoaded) await load();
+  const coordinates = coordinatesOf(points, options, isLoaded() ? itselfOf : copyOf);
+  if (!isLoaded()) await load();
   return triangulated(coordinates);
 }
 
 /**
- * As {@link triangulate}, without a promise. Call {@link init} before.
+ * As {@link triangulate}, without a promise. Call `init` before.
  *
  * ```ts
  * await init();
  * const { triangles } = triangulateSync(points);
  * ```
  *
- * @throws {@link EdgeflipError} `load-failed` without {@link init}; otherwise as {@link triangulate}.
+ * @throws {@link EdgeflipError} `load-failed` without `init`; otherwise as {@link triangulate}.
  */
 export function triangulateSync(points: VertexArray | readonly number[], options?: Spacing): Triangulation;
 /** The same, of a list of points that begin with x and y. */
@@ -120,10 +101,7 @@ export function triangulateSync<P>(
   options: Accessors<P>,
 ): Triangulation;
 export function triangulateSync(points: unknown, options: unknown = {}): Triangulation {
-  if (!isLoaded) {
-    const why = 'the module of the points is not loaded; call `await init()` before triangulateSync';
-    throw new EdgeflipError('load-failed', why);
-  }
+  checkLoaded('triangulateSync');
   return triangulated(coordinatesOf(points, options, itselfOf));
 }
 

@@ -47,6 +47,8 @@ pub(super) fn corners_of(
     Ok(first)
 }
 
+const NO_RING: &str = "its hull is not one ring";
+
 fn refused(message: &str) -> Error {
     let message = format!("{message}; pass the triangulation of these points, unchanged");
     Error::Option { option: "triangulation", message }
@@ -106,7 +108,7 @@ impl Verified<'_> {
     fn check_hull(&self) -> Result<(), Error> {
         let twins = &self.triangulation.twins;
         let Some(start) = twins.iter().position(|&twin| twin == NONE) else {
-            return if twins.is_empty() { self.check_line() } else { Err(refused("it has no hull")) };
+            return if twins.is_empty() { self.check_line() } else { Err(refused(NO_RING)) };
         };
         let mut left = twins.iter().filter(|&&twin| twin == NONE).count();
         let (mut h, mut turns) = (start as u32, 0);
@@ -131,7 +133,7 @@ impl Verified<'_> {
             }
         }
         if left > 0 || h != start as u32 || turns != 1 {
-            return Err(refused("its hull is not one ring"));
+            return Err(refused(NO_RING));
         }
         Ok(())
     }

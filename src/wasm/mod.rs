@@ -20,5 +20,7 @@ pub mod threads;
 #[cfg(feature = "js-untangle")]
 pub mod untangle;
 mod values;
+#[cfg(feature = "js-points")]
+pub mod voronoi;
 #[cfg(feature = "js-webgl2")]
 pub mod webgl2;

@@ -28,7 +28,7 @@ pub fn triangulate(points: JsPositions) -> Result<JsValue, JsValue> {
 }
 
 /// The exception for an error. What other modules call a vertex is a point here.
-fn in_words_of_points(error: Error) -> JsValue {
+pub(super) fn in_words_of_points(error: Error) -> JsValue {
     match error {
         Error::NonFinite { .. } => coded(error.code(), &error.to_string().replacen("vertex", "point", 1)),
         error => thrown(error),
