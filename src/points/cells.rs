@@ -1,25 +1,26 @@
 //! The cells of a Voronoi diagram: walks around the points.
 
 use super::frame::{Cut, Frame};
+use super::verify::Given;
 use crate::mesh::half_edge::{next, prev, triangle_of};
 use crate::system::threads::Threads;
-use crate::{Error, NONE, Positions, Triangulation};
+use crate::{Error, NONE, Triangulation};
 use glam::DVec2;
 use std::ops::Range;
 
 pub(super) struct Cells<'a> {
-    pub(super) triangulation: &'a Triangulation,
-    pub(super) points: &'a Positions,
+    pub(super) given: Given<'a>,
     pub(super) frame: Frame,
     /// Of each triangle, the circumcentre and its outcode.
-    pub(super) centres: &'a [DVec2],
+    pub(super) centres: &'a [[f64; 2]],
     pub(super) outcodes: &'a [u8],
 }
 
-/// An edge of a cell: the point on the other side, and the triangles from whose circumcentre to whose it goes, with the
-/// cell on the left. `None` is infinitely far.
-struct Edge {
-    other: u32,
+/// An edge of a cell: where the array has the point on the other side, and the triangles from whose circumcentre to whose
+/// the edge goes, with the cell on the left. `None` is infinitely far.
+struct Edge<'a> {
+    array: &'a [u32],
+    other: usize,
     triangles: [Option<u32>; 2],
 }
 
@@ -40,46 +41,50 @@ struct Outlines {
 }
 
 impl Cells<'_> {
-    /// The cells of all points: where each begins, and the corners. `first` has a half-edge of each point, the first one
-    /// around it if it is on the hull, or `NONE` if the point is in no triangle.
+    /// The cells of all points: where each begins, and the corners. `half_edges` has one that starts at each point, on the
+    /// hull the first around it, or `NONE` if the point is in no triangle.
     ///
     /// # Errors
     /// [`Error::TooLarge`].
-    pub(super) fn all(&self, first: &[u32], threads: &Threads) -> Result<(Vec<u32>, Vec<[f64; 2]>), Error> {
-        let mut parts = if self.triangulation.is_flat() {
-            let mut places = vec![None; first.len()];
-            for (i, &point) in self.triangulation.hull.iter().enumerate() {
+    pub(super) fn all(
+        &self,
+        half_edges: &[u32],
+        threads: &Threads,
+    ) -> Result<(Vec<u32>, Vec<[f64; 2]>), Error> {
+        let count = half_edges.len();
+        let parts = if self.given.triangulation.is_flat() {
+            let mut places = vec![None; count];
+            for (i, &point) in self.given.triangulation.hull.iter().enumerate() {
                 places[point as usize] = Some(Place::Line(i));
             }
-            vec![self.of(0..first.len(), |point| places[point])]
+            vec![self.of(0..count, 4.0, &|point| places[point])]
         } else {
-            let place = |point: usize| Some(first[point]).filter(|&start| start != NONE).map(Place::Star);
-            threads.map(first.len(), |points| self.of(points, place))
+            let place = |point: usize| Some(half_edges[point]).filter(|&h| h != NONE).map(Place::Star);
+            // A circumcentre in the box is a corner of three cells.
+            let inside = self.outcodes.iter().filter(|&&outcode| outcode == 0).count();
+            let mean = 3.0 * inside as f64 / count as f64;
+            threads.map(count, |points| self.of(points, mean, &place))
         };
-        let count = parts.iter().map(|part| part.corners.len()).sum();
-        let limit = u32::MAX as usize;
-        if count > limit {
-            return Err(Error::TooLarge { what: "corners of cells", count, limit });
-        }
-        let mut starts = Vec::with_capacity(first.len() + 1);
+        let mut starts = Vec::with_capacity(count + 1);
         starts.push(0);
         let mut before = 0;
         for part in &parts {
             starts.extend(part.ends.iter().map(|end| (before + end) as u32));
             before += part.corners.len();
         }
-        if let [part] = &mut *parts {
-            return Ok((starts, std::mem::take(&mut part.corners)));
+        let limit = u32::MAX as usize;
+        if before > limit {
+            return Err(Error::TooLarge { what: "corners of cells", count: before, limit });
         }
-        let mut corners = Vec::with_capacity(count);
-        parts.iter().for_each(|part| threads.append(&mut corners, &part.corners));
-        Ok((starts, corners))
+        Ok((starts, threads.joined(parts.into_iter().map(|part| part.corners).collect())))
     }
 
-    /// The cells of these points.
-    fn of(&self, points: Range<usize>, place: impl Fn(usize) -> Option<Place>) -> Outlines {
-        let mut outlines = Outlines::default();
-        outlines.ends.reserve(points.len());
+    /// The cells of these points, which have so many corners in the mean.
+    fn of(&self, points: Range<usize>, mean: f64, place: &dyn Fn(usize) -> Option<Place>) -> Outlines {
+        let mut outlines = Outlines {
+            ends: Vec::with_capacity(points.len()),
+            corners: Vec::with_capacity((mean * points.len() as f64) as usize),
+        };
         for point in points {
             if let Some(place) = place(point) {
                 self.add(&mut outlines.corners, point as u32, place);
@@ -90,22 +95,30 @@ impl Cells<'_> {
     }
 
     /// Adds the corners of a cell.
-    #[inline(always)]
     fn add(&self, corners: &mut Vec<[f64; 2]>, point: u32, place: Place) {
         let mut outline =
             Outline { start: corners.len(), corners, is_met: false, first_entry: None, last_exit: None };
+        let ends = |edge: &Edge| self.given.points([point, edge.array[edge.other]]);
         self.edges(place, |edge| {
             let outcodes =
                 edge.triangles.map(|triangle| triangle.map(|triangle| self.outcodes[triangle as usize]));
-            let ends = || self.points.points2([point, edge.other]);
-            if let Some(cut) = self.frame.cut(outcodes, ends) {
-                outline.add(cut, &edge, self, ends);
+            match (outcodes, edge.triangles) {
+                ([Some(0), Some(0)], [Some(from), _]) => {
+                    outline.is_met = true;
+                    outline.push(self.centres[from as usize]);
+                }
+                ([Some(from), Some(to)], _) if from & to != 0 => {}
+                _ => {
+                    if let Some(cut) = self.frame.cut(outcodes, ends(&edge)) {
+                        outline.add(cut, &edge, self, ends(&edge));
+                    }
+                }
             }
         });
         outline.close(self, || {
             let mut has_corner = true;
-            self.edges(place, |Edge { other, .. }| {
-                let [p, q] = self.points.points2([point, other]);
+            self.edges(place, |edge| {
+                let [p, q] = ends(&edge);
                 has_corner = has_corner && self.frame.has_corner(0, p, q);
             });
             has_corner
@@ -114,33 +127,36 @@ impl Cells<'_> {
 
     /// The edges of a cell, counter-clockwise.
     #[inline(always)]
-    fn edges(&self, place: Place, mut each: impl FnMut(Edge)) {
-        let Triangulation { triangles, twins, hull, .. } = self.triangulation;
+    fn edges<'b>(&'b self, place: Place, mut each: impl FnMut(Edge<'b>)) {
+        let Triangulation { triangles, twins, hull, .. } = self.given.triangulation;
         let start = match place {
             Place::Star(start) => start,
             Place::Line(i) => {
-                let neighbours = [hull.get(i + 1), i.checked_sub(1).and_then(|before| hull.get(before))];
-                neighbours
-                    .into_iter()
-                    .flatten()
-                    .for_each(|&other| each(Edge { other, triangles: [None; 2] }));
+                let others = [Some(i + 1).filter(|&after| after < hull.len()), i.checked_sub(1)];
+                for other in others.into_iter().flatten() {
+                    each(Edge { array: hull, other, triangles: [None; 2] });
+                }
                 return;
             }
         };
+        let array = triangles.as_slice();
         if twins[start as usize] == NONE {
-            let other = triangles[next(start) as usize];
-            each(Edge { other, triangles: [None, Some(triangle_of(start))] });
+            each(Edge { array, other: next(start) as usize, triangles: [None, Some(triangle_of(start))] });
         }
         let mut h = start;
+        let mut from = triangle_of(h);
         loop {
-            let last = prev(h);
-            let (other, twin) = (triangles[last as usize], twins[last as usize]);
-            let to = (twin != NONE).then(|| triangle_of(twin));
-            each(Edge { other, triangles: [Some(triangle_of(h)), to] });
-            if twin == NONE || twin == start {
+            let other = prev(h) as usize;
+            let twin = twins[other];
+            if twin == NONE {
+                return each(Edge { array, other, triangles: [Some(from), None] });
+            }
+            let to = triangle_of(twin);
+            each(Edge { array, other, triangles: [Some(from), Some(to)] });
+            if twin == start {
                 return;
             }
-            h = twin;
+            (h, from) = (twin, to);
         }
     }
 }
@@ -160,8 +176,7 @@ struct Outline<'a> {
 
 impl Outline<'_> {
     /// Adds the part of an edge that is in the box, and the corners of the box between it and the part before.
-    #[inline(always)]
-    fn add(&mut self, cut: Cut, edge: &Edge, cells: &Cells, ends: impl Fn() -> [DVec2; 2]) {
+    fn add(&mut self, cut: Cut, edge: &Edge, cells: &Cells, [p, q]: [DVec2; 2]) {
         self.is_met = true;
         match (cut.entry, edge.triangles[0]) {
             (Some(side), _) => {
@@ -169,14 +184,12 @@ impl Outline<'_> {
                     Some(exit) => self.turn(exit, side, cells),
                     None => self.first_entry = Some(side),
                 }
-                let [p, q] = ends();
                 self.push(cells.frame.crossing(p, q, side));
             }
             (None, Some(triangle)) => self.push(cells.centres[triangle as usize]),
             (None, None) => {}
         }
         if let Some(side) = cut.exit {
-            let [p, q] = ends();
             self.push(cells.frame.crossing(p, q, side));
             self.last_exit = Some(side);
         }
@@ -212,8 +225,7 @@ impl Outline<'_> {
 
     /// Adds a corner, unless it is the last one again.
     #[inline(always)]
-    fn push(&mut self, corner: DVec2) {
-        let corner = corner.to_array();
+    fn push(&mut self, corner: [f64; 2]) {
         if self.corners[self.start..].last() != Some(&corner) {
             self.corners.push(corner);
         }

@@ -6,14 +6,19 @@
 //! each side: whether a point is beyond it.
 
 use crate::Error;
-use crate::error::number;
 use crate::predicates::{Line, compare_circumcentre, crossing, nearer};
 use glam::DVec2;
 use std::array;
 
-/// The sides that are lines of one x.
 const RIGHT: usize = 1;
+const TOP: usize = 2;
 const LEFT: usize = 3;
+
+/// A bit for each side.
+#[inline(always)]
+fn mask([bottom, right, top, left]: [bool; 4]) -> u8 {
+    u8::from(bottom) | u8::from(right) << RIGHT | u8::from(top) << TOP | u8::from(left) << LEFT
+}
 
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
@@ -30,10 +35,7 @@ impl Frame {
         if bounds.iter().all(|x| x.is_finite()) && left < right && bottom < top {
             return Ok(Self { sides: [bottom, right, top, left] });
         }
-        let text = bounds.map(number).join(", ");
-        let message = format!(
-            "[{text}] is not a box: give finite [xmin, ymin, xmax, ymax] with xmin < xmax, ymin < ymax"
-        );
+        let message = "give finite [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax".to_owned();
         Err(Error::Option { option: "bounds", message })
     }
 
@@ -41,34 +43,28 @@ impl Frame {
         Line { axis: if side == LEFT || side == RIGHT { 0 } else { 1 }, at: self.sides[side] }
     }
 
-    pub(super) fn corner(&self, corner: usize) -> DVec2 {
+    pub(super) fn corner(&self, corner: usize) -> [f64; 2] {
         let [bottom, right, top, left] = self.sides;
-        DVec2::new(
-            if corner == 1 || corner == 2 { right } else { left },
-            if corner < 2 { bottom } else { top },
-        )
+        [if corner == 1 || corner == 2 { right } else { left }, if corner < 2 { bottom } else { top }]
     }
 
     /// The outcode of a circumcentre. A rounded coordinate that is not on a side is on the same side as the exact one.
     #[inline(always)]
-    pub(super) fn outcode(&self, centre: DVec2, triangle: impl Fn() -> [DVec2; 3]) -> u8 {
+    pub(super) fn outcode(&self, centre: DVec2, triangle: [DVec2; 3]) -> u8 {
         let [bottom, right, top, left] = self.sides;
         let is_on = centre.x == left || centre.x == right || centre.y == bottom || centre.y == top;
         if is_on {
-            let [a, b, c] = triangle();
-            let beyond = |side: usize| {
-                let order = compare_circumcentre(a, b, c, self.line(side));
-                u8::from(if side == RIGHT || side == 2 { order.is_ge() } else { order.is_le() }) << side
-            };
-            return (0..4).map(beyond).sum();
+            return mask([0, 1, 2, 3].map(|side| {
+                let order = compare_circumcentre(triangle, self.line(side));
+                if side == RIGHT || side == TOP { order.is_ge() } else { order.is_le() }
+            }));
         }
-        let beyond = [centre.y < bottom, centre.x > right, centre.y > top, centre.x < left];
-        (0..4).map(|side| u8::from(beyond[side]) << side).sum()
+        mask([centre.y < bottom, centre.x > right, centre.y > top, centre.x < left])
     }
 
     /// Whether a corner is nearer to `p` than to `q`.
     pub(super) fn has_corner(&self, corner: usize, p: DVec2, q: DVec2) -> bool {
-        let order = nearer(p, q, self.corner(corner));
+        let order = nearer(p, q, self.corner(corner).into());
         if order.is_ne() {
             return order.is_lt();
         }
@@ -78,25 +74,8 @@ impl Frame {
     }
 
     /// Where the edge between the cells of `p` and `q` is in the box, seen in the direction that has `p` on the left. It
-    /// goes from one circumcentre to another, which have these outcodes; `None` is infinitely far.
-    #[inline(always)]
-    pub(super) fn cut(
-        &self,
-        [from, to]: [Option<u8>; 2],
-        points: impl FnOnce() -> [DVec2; 2],
-    ) -> Option<Cut> {
-        if let (Some(from), Some(to)) = (from, to) {
-            if from | to == 0 {
-                return Some(Cut::default());
-            }
-            if from & to != 0 {
-                return None;
-            }
-        }
-        self.cut_line([from, to], points())
-    }
-
-    fn cut_line(&self, [from, to]: [Option<u8>; 2], [p, q]: [DVec2; 2]) -> Option<Cut> {
+    /// goes from one circumcentre to another, which have these outcodes, without a common side; `None` is infinitely far.
+    pub(super) fn cut(&self, [from, to]: [Option<u8>; 2], [p, q]: [DVec2; 2]) -> Option<Cut> {
         let is_of_p: [bool; 4] = array::from_fn(|corner| self.has_corner(corner, p, q));
         let side_where =
             |first: bool| (0..4).find(|&side| is_of_p[side] == first && is_of_p[(side + 1) % 4] != first);
@@ -104,7 +83,6 @@ impl Frame {
         // The sides into whose half-planes the line goes, in the direction of q - p turned to the left.
         let [right, up] = [p.y > q.y, q.x > p.x];
         let [left, down] = [p.y < q.y, q.x < p.x];
-        let mask = |sides: [bool; 4]| (0..4).map(|side| u8::from(sides[side]) << side).sum::<u8>();
         let (entered, left_behind) = (mask([up, left, down, right]), mask([down, right, up, left]));
         let is_before = from.is_none_or(|from| from & entered != 0);
         let is_after = to.is_none_or(|to| to & left_behind != 0);
@@ -114,15 +92,15 @@ impl Frame {
     }
 
     /// Where the edge between two cells meets a side.
-    pub(super) fn crossing(&self, p: DVec2, q: DVec2, side: usize) -> DVec2 {
+    pub(super) fn crossing(&self, p: DVec2, q: DVec2, side: usize) -> [f64; 2] {
         let line = self.line(side);
         let other = crossing(p, q, line);
-        if line.axis == 0 { DVec2::new(line.at, other) } else { DVec2::new(other, line.at) }
+        if line.axis == 0 { [line.at, other] } else { [other, line.at] }
     }
 }
 
 /// The part of an edge in the box. Without an entry it begins with a circumcentre, without an exit it ends with one.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(super) struct Cut {
     pub(super) entry: Option<usize>,
     pub(super) exit: Option<usize>,

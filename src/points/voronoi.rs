@@ -2,11 +2,12 @@
 
 use super::cells::Cells;
 use super::frame::Frame;
-use super::verify::corners_of;
+use super::verify::{Given, refused};
 use crate::predicates::circumcentre;
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, Positions, Triangulation};
+use std::borrow::Cow;
 
 /// The most bytes that a point takes at a time: two circumcentres (32), their outcodes (2), a half-edge (4), the start of
 /// the cell (4), and six corners (96) in a list that may have room for as many again.
@@ -67,28 +68,34 @@ impl Triangulation {
         memory::check(BYTES_PER_POINT * (length / stride) as u64)?;
         let threads = Threads::new(None, self.triangles.len() / 3)?;
         points.refuse_non_finite(Dimension::Two, &threads)?;
-        let first = corners_of(self, points, &threads)?;
-        threads.enter(|| self.cells(points, frame, &first, &threads))
+        let pairs = match points {
+            Positions::F32(numbers) => {
+                Cow::from_iter(numbers.as_chunks().0.iter().map(|pair| pair.map(f64::from)))
+            }
+            Positions::F64(numbers) => Cow::Borrowed(numbers.as_chunks().0),
+        };
+        let given = Given::new(self, &pairs)?;
+        threads.enter(|| diagram(given, frame, &threads))
     }
+}
 
-    fn cells(
-        &self,
-        points: &Positions,
-        frame: Frame,
-        first: &[u32],
-        threads: &Threads,
-    ) -> Result<Voronoi, Error> {
-        let rows = self.triangles.as_chunks().0;
-        let centres = threads.collect(rows.len(), |triangle| {
-            let [a, b, c] = points.points2(rows[triangle]);
-            circumcentre(a, b, c)
-        });
-        let outcodes = threads.collect(rows.len(), |triangle| {
-            frame.outcode(centres[triangle], || points.points2(rows[triangle]))
-        });
-        let cells = Cells { triangulation: self, points, frame, centres: &centres, outcodes: &outcodes };
-        let (starts, corners) = cells.all(first, threads)?;
-        let circumcentres = Vec::from_iter(centres.iter().map(|centre| centre.to_array())).into_flattened();
-        Ok(Voronoi { circumcentres, starts, corners: corners.into_flattened() })
-    }
+fn diagram(given: Given, frame: Frame, threads: &Threads) -> Result<Voronoi, Error> {
+    let parts = threads.map(given.triangulation.triangles.len() / 3, |triangles| {
+        let mut outcodes = Vec::with_capacity(triangles.len());
+        let mut centres = Vec::with_capacity(triangles.len());
+        for triangle in triangles {
+            let corners = given.triangle(triangle)?;
+            let centre = circumcentre(corners);
+            outcodes.push(frame.outcode(centre, corners));
+            centres.push(centre.to_array());
+        }
+        Ok((centres, outcodes))
+    });
+    let parts = parts.into_iter().collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let (centres, outcodes): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    let (centres, outcodes) = (threads.joined(centres), threads.joined(outcodes));
+    let half_edges = given.half_edges().map_err(refused)?;
+    let cells = Cells { given, frame, centres: &centres, outcodes: &outcodes };
+    let (starts, corners) = cells.all(&half_edges, threads)?;
+    Ok(Voronoi { circumcentres: centres.into_flattened(), starts, corners: corners.into_flattened() })
 }

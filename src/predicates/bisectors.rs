@@ -3,7 +3,7 @@
 
 use super::exact::{Differences, Ring, Unbounded, quotient};
 use super::plane::{EPSILON, UNDERFLOW, sign};
-use super::rounded::{Double, Polynomial, rounded, scale_of};
+use super::rounded::{Double, Polynomial, cross, in_unit, rounded};
 use glam::DVec2;
 use std::array;
 use std::cmp::Ordering;
@@ -17,36 +17,30 @@ pub(crate) struct Line {
 
 /// The circumcentre of (a, b, c), which is counter-clockwise. A coordinate beyond the range of f64 is infinite.
 #[inline(always)]
-pub(crate) fn circumcentre(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {
+pub(crate) fn circumcentre([a, b, c]: [DVec2; 3]) -> DVec2 {
     let quick = || {
         let [p, q] = [b, c].map(|v| [Double::difference(v.x, a.x), Double::difference(v.y, a.y)]);
-        let [to_one, unit] = scale_of([p[0].abs(), p[1].abs(), q[0].abs(), q[1].abs()])?;
-        let [[px, py], [qx, qy]] = [p, q].map(|v| v.map(|x| x.scaled(to_one)));
-        let cross = |[ax, ay]: [Double; 2], [bx, by]: [Double; 2]| Polynomial {
-            value: ax * by - ay * bx,
-            size: ax.abs() * by.abs() + ay.abs() * bx.abs(),
-        };
-        let squares = [px * px + py * py, qx * qx + qy * qy];
-        let area = cross([px, py], [qx, qy]);
-        let doubled = Polynomial { value: area.value.scaled(2.0), size: 2.0 * area.size };
+        let ([px, py, qx, qy], unit) = in_unit([p[0], p[1], q[0], q[1]])?;
+        let squares = [cross([px, py], [-py, px]).value, cross([qx, qy], [-qy, qx]).value];
+        let doubled = cross([px, py], [qx, qy]).doubled();
         let x = rounded(a.x, cross(squares, [py, qy]), doubled, unit)?;
         let y = rounded(a.y, cross([px, qx], squares), doubled, unit)?;
         Some(DVec2::new(x, y))
     };
     // Adding 0 turns -0 into 0.
-    quick().unwrap_or_else(|| exact_circumcentre(a, b, c)) + DVec2::ZERO
+    quick().unwrap_or_else(|| exact_circumcentre([a, b, c])) + DVec2::ZERO
 }
 
 #[cold]
-fn exact_circumcentre(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {
-    let [x, y] = array::from_fn(|axis| centre_from(a, b, c, Line { axis, at: 0.0 }).rounded());
+fn exact_circumcentre(corners: [DVec2; 3]) -> DVec2 {
+    let [x, y] = array::from_fn(|axis| centre_from(corners, Line { axis, at: 0.0 }).rounded());
     DVec2::new(x, y)
 }
 
 /// Where the circumcentre of (a, b, c), which is counter-clockwise, is on the axis, compared with the line.
 #[cold]
-pub(crate) fn compare_circumcentre(a: DVec2, b: DVec2, c: DVec2, line: Line) -> Ordering {
-    centre_from(a, b, c, line).numerator.sign()
+pub(crate) fn compare_circumcentre(corners: [DVec2; 3], line: Line) -> Ordering {
+    centre_from(corners, line).numerator.sign()
 }
 
 /// Where the bisector of two points meets a line: the coordinate on the other axis. The points differ on that axis.
@@ -56,27 +50,21 @@ pub(crate) fn crossing(p: DVec2, q: DVec2, Line { axis, at }: Line) -> f64 {
     let quick = || {
         let [across, along] = [0, 1].map(|i| Double::difference(q[i], p[i]));
         let ends = [p, q].map(|v| Double::difference(at, v[0]));
-        let [to_one, unit] = scale_of([across.abs(), along.abs(), ends[0].abs(), ends[1].abs()])?;
-        let [across, along, first, second] = [across, along, ends[0], ends[1]].map(|x| x.scaled(to_one));
-        let numerator = Polynomial {
-            value: along * along - across * (first + second),
-            size: along.abs() * along.abs() + across.abs() * (first.abs() + second.abs()),
-        };
-        let doubled = Polynomial { value: along.scaled(2.0), size: 2.0 * along.abs() };
-        rounded(p[1], numerator, doubled, unit)
+        let ([across, along, first, second], unit) = in_unit([across, along, ends[0], ends[1]])?;
+        let numerator = cross([along, across], [first + second, along]);
+        rounded(p[1], numerator, Polynomial { value: along, size: along.abs() }.doubled(), unit)
     };
     quick().unwrap_or_else(|| exact_crossing(p, q, at)) + 0.0
 }
 
 #[cold]
 fn exact_crossing(p: [f64; 2], q: [f64; 2], at: f64) -> f64 {
-    let pairs = [(q[0], p[0]), (q[1], p[1]), (at, p[0]), (at, q[0]), (p[1], 0.0)];
-    let differences = Differences::new(pairs);
-    let [across, along, first, second, base] = differences.integers::<Unbounded>();
+    let ([across, along, first, second, base, _], exponent) =
+        integers([(q[0], p[0]), (q[1], p[1]), (at, p[0]), (at, q[0]), (p[1], 0.0), NOTHING]);
     let denominator = along.add(&along);
     let numerator = along.mul(&along).sub(&across.mul(&first.add(&second)));
     let numerator = numerator.add(&base.mul(&denominator));
-    Ratio { numerator, denominator, exponent: differences.unit }.rounded()
+    Ratio { numerator, denominator, exponent }.rounded()
 }
 
 /// The distance of `v` from `p`, compared with that from `q`.
@@ -93,11 +81,21 @@ pub(crate) fn nearer(p: DVec2, q: DVec2, v: DVec2) -> Ordering {
 
 #[cold]
 fn exactly_nearer(p: DVec2, q: DVec2, v: DVec2) -> Ordering {
-    let pairs = [(q, p), (v, p), (v, q)].map(|(u, v)| [(u.x, v.x), (u.y, v.y)]);
-    let differences =
-        Differences::new([pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1], pairs[2][0], pairs[2][1]]);
-    let [dx, dy, px, py, qx, qy] = differences.integers::<Unbounded>();
+    let ([dx, dy, px, py, qx, qy], _) =
+        integers([(q.x, p.x), (q.y, p.y), (v.x, p.x), (v.y, p.y), (v.x, q.x), (v.y, q.y)]);
     dx.mul(&px.add(&qx)).add(&dy.mul(&py.add(&qy))).sign()
+}
+
+const NOTHING: (f64, f64) = (0.0, 0.0);
+
+/// The differences of pairs of numbers as integers, and the exponent of their unit. One function for all, with the number
+/// of pairs that the in-circle test has, because a module of the npm package is smaller with it.
+#[inline(never)]
+fn integers(pairs: [(f64, f64); 6]) -> ([Unbounded; 6], i32) {
+    let [a, b, c, d, e, f] = pairs;
+    let differences = Differences::new([a, b, c, d, e, f, NOTHING, NOTHING]);
+    let [a, b, c, d, e, f, ..] = differences.integers();
+    ([a, b, c, d, e, f], differences.unit)
 }
 
 /// `numerator / denominator * 2^exponent`.
@@ -114,9 +112,9 @@ impl Ratio {
 }
 
 /// Where the circumcentre is, from the line. The denominator is positive.
-fn centre_from(a: DVec2, b: DVec2, c: DVec2, Line { axis, at }: Line) -> Ratio {
-    let differences = Differences::new([(b.x, a.x), (b.y, a.y), (c.x, a.x), (c.y, a.y), (a[axis], at)]);
-    let [px, py, qx, qy, base] = differences.integers::<Unbounded>();
+fn centre_from([a, b, c]: [DVec2; 3], Line { axis, at }: Line) -> Ratio {
+    let ([px, py, qx, qy, base, _], exponent) =
+        integers([(b.x, a.x), (b.y, a.y), (c.x, a.x), (c.y, a.y), (a[axis], at), NOTHING]);
     let cross = |ax: &Unbounded, ay: &Unbounded, bx: &Unbounded, by: &Unbounded| ax.mul(by).sub(&ay.mul(bx));
     let squares = [(&px, &py), (&qx, &qy)].map(|(x, y)| x.mul(x).add(&y.mul(y)));
     let area = cross(&px, &py, &qx, &qy);
@@ -127,5 +125,5 @@ fn centre_from(a: DVec2, b: DVec2, c: DVec2, Line { axis, at }: Line) -> Ratio {
         cross(&px, &qx, &squares[0], &squares[1])
     };
     let numerator = from_a.add(&base.mul(&denominator));
-    Ratio { numerator, denominator, exponent: differences.unit }
+    Ratio { numerator, denominator, exponent }
 }

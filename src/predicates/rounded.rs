@@ -107,12 +107,13 @@ impl Mul for Double {
     }
 }
 
-/// A power of two that brings the largest of some magnitudes near 1, and its inverse. `None` near the ends of the range.
+/// Numbers in a unit that brings the largest of them near 1, and that unit. `None` near the ends of the range.
 #[inline(always)]
-pub(super) fn scale_of<const N: usize>(magnitudes: [f64; N]) -> Option<[f64; 2]> {
-    let largest = magnitudes.into_iter().fold(0.0, f64::max);
+pub(super) fn in_unit(numbers: [Double; 4]) -> Option<([Double; 4], f64)> {
+    let largest = numbers.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let power_of_two = f64::from_bits(largest.to_bits() >> 52 << 52);
-    (1e-290..1e290).contains(&power_of_two).then(|| [1.0 / power_of_two, power_of_two])
+    let is_usual = (1e-290..1e290).contains(&power_of_two);
+    is_usual.then(|| (numbers.map(|x| x.scaled(1.0 / power_of_two)), power_of_two))
 }
 
 /// A polynomial of numbers up to about 4 that stand for exact ones: its value, and the sum of the magnitudes of its
@@ -123,8 +124,21 @@ pub(super) struct Polynomial {
     pub(super) size: f64,
 }
 
+impl Polynomial {
+    #[inline(always)]
+    pub(super) fn doubled(self) -> Self {
+        Self { value: self.value.scaled(2.0), size: 2.0 * self.size }
+    }
+}
+
+/// The cross product of two vectors.
+#[inline(never)]
+pub(super) fn cross([ax, ay]: [Double; 2], [bx, by]: [Double; 2]) -> Polynomial {
+    Polynomial { value: ax * by - ay * bx, size: ax.abs() * by.abs() + ay.abs() * bx.abs() }
+}
+
 /// `base` + `unit` · `numerator` / `denominator`, rounded to the nearest f64, where that is certain.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn rounded(base: f64, numerator: Polynomial, denominator: Polynomial, unit: f64) -> Option<f64> {
     // What underflows is off by less than 2^-1000, because all factors are at most about 4.
     let error = |size: f64| 40.0 * U * U * size + 1e-300;

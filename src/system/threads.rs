@@ -223,6 +223,16 @@ impl Threads {
         copy
     }
 
+    /// The items of lists, one after the other.
+    pub(crate) fn joined<T: Copy + Send + Sync>(&self, mut lists: Vec<Vec<T>>) -> Vec<T> {
+        if let [list] = &mut *lists {
+            return std::mem::take(list);
+        }
+        let mut all = Vec::with_capacity(lists.iter().map(Vec::len).sum());
+        lists.iter().for_each(|list| self.append(&mut all, list));
+        all
+    }
+
     /// Copies `items` to `all` from index `first` on: over what is there, then behind it.
     #[cfg(all(feature = "gpu", not(target_arch = "wasm32")))]
     pub(crate) fn put<T: Copy + Send + Sync>(&self, all: &mut Vec<T>, first: usize, items: &[T]) {
