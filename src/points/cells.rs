@@ -98,23 +98,17 @@ impl Cells<'_> {
     fn add(&self, corners: &mut Vec<[f64; 2]>, point: u32, place: Place) {
         let mut outline =
             Outline { start: corners.len(), corners, is_met: false, first_entry: None, last_exit: None };
+        let is_whole = matches!(place, Place::Star(start) if self.add_whole(&mut outline, start));
         let ends = |edge: &Edge| self.given.points([point, edge.array[edge.other]]);
-        self.edges(place, |edge| {
-            let outcodes =
-                edge.triangles.map(|triangle| triangle.map(|triangle| self.outcodes[triangle as usize]));
-            match (outcodes, edge.triangles) {
-                ([Some(0), Some(0)], [Some(from), _]) => {
-                    outline.is_met = true;
-                    outline.push(self.centres[from as usize]);
+        if !is_whole {
+            self.edges(place, |edge| {
+                let outcodes = edge.triangles.map(|triangle| Some(self.outcodes[triangle? as usize]));
+                let ends = ends(&edge);
+                if let Some(cut) = self.frame.cut(outcodes, ends) {
+                    outline.add(cut, &edge, self, ends);
                 }
-                ([Some(from), Some(to)], _) if from & to != 0 => {}
-                _ => {
-                    if let Some(cut) = self.frame.cut(outcodes, ends(&edge)) {
-                        outline.add(cut, &edge, self, ends(&edge));
-                    }
-                }
-            }
-        });
+            });
+        }
         outline.close(self, || {
             let mut has_corner = true;
             self.edges(place, |edge| {
@@ -123,6 +117,26 @@ impl Cells<'_> {
             });
             has_corner
         });
+    }
+
+    /// Adds the corners of a cell around the point where the half-edge starts, if all of them are circumcentres in the box.
+    #[inline(always)]
+    fn add_whole(&self, outline: &mut Outline, start: u32) -> bool {
+        let mut h = start;
+        loop {
+            let triangle = triangle_of(h) as usize;
+            let twin = self.given.triangulation.twins[prev(h) as usize];
+            if twin == NONE || self.outcodes[triangle] != 0 {
+                outline.corners.truncate(outline.start);
+                return false;
+            }
+            outline.push(self.centres[triangle]);
+            if twin == start {
+                outline.is_met = true;
+                return true;
+            }
+            h = twin;
+        }
     }
 
     /// The edges of a cell, counter-clockwise.

@@ -74,8 +74,13 @@ impl Frame {
     }
 
     /// Where the edge between the cells of `p` and `q` is in the box, seen in the direction that has `p` on the left. It
-    /// goes from one circumcentre to another, which have these outcodes, without a common side; `None` is infinitely far.
+    /// goes from one circumcentre to another, which have these outcodes; `None` is infinitely far.
     pub(super) fn cut(&self, [from, to]: [Option<u8>; 2], [p, q]: [DVec2; 2]) -> Option<Cut> {
+        match [from, to] {
+            [Some(0), Some(0)] => return Some(Cut { entry: None, exit: None }),
+            [Some(from), Some(to)] if from & to != 0 => return None,
+            _ => {}
+        }
         let is_of_p: [bool; 4] = array::from_fn(|corner| self.has_corner(corner, p, q));
         let side_where =
             |first: bool| (0..4).find(|&side| is_of_p[side] == first && is_of_p[(side + 1) % 4] != first);

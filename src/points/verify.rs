@@ -11,6 +11,7 @@ use std::array;
 /// What is wrong.
 pub(super) type Refusal = &'static str;
 
+const NO_TWIN: Refusal = "a twin of it is not the same edge from the other side";
 const NO_RING: Refusal = "its hull is not one ring";
 
 /// A triangulation whose lengths and indices of points are right.
@@ -67,9 +68,11 @@ impl<'a> Given<'a> {
         array::from_fn(|i| self.points[indices[i] as usize].into())
     }
 
-    /// The corners of a triangle, after a check of its area and of its three edges.
+    /// The corners of a triangle, after a check of its area and its edges. Adds to `fitting` the half-edges that have no
+    /// twin or are checked here. An edge is checked in the first of its triangles; half-edges that are no twins of each
+    /// other are in none, so that the sum shows them.
     #[inline(always)]
-    pub(super) fn triangle(&self, triangle: usize) -> Result<[DVec2; 3], Refusal> {
+    pub(super) fn triangle(&self, triangle: usize, fitting: &mut usize) -> Result<[DVec2; 3], Refusal> {
         let halves = [0, 1, 2].map(|i| 3 * triangle as u32 + i);
         let corners = halves.map(|h| self.origin(h));
         let [a, b, c] = self.points(corners);
@@ -79,21 +82,16 @@ impl<'a> Given<'a> {
         for i in 0..3 {
             let (h, g) = (halves[i], self.twin(halves[i]));
             if g == NONE {
-                continue;
-            }
-            if g as usize >= self.triangulation.twins.len()
-                || [self.twin(g), self.origin(g), self.origin(next(g))]
-                    != [h, corners[(i + 1) % 3], corners[i]]
-            {
-                return Err("a twin of it is not the same edge from the other side");
-            }
-            if h < g {
-                let [p, q, r, d] = self.points([
-                    corners[i],
-                    corners[(i + 1) % 3],
-                    corners[(i + 2) % 3],
-                    self.origin(next(next(g))),
-                ]);
+                *fitting += 1;
+            } else if h < g {
+                let [start, end, before] = [0, 1, 2].map(|k| corners[(i + k) % 3]);
+                if g as usize >= self.triangulation.twins.len()
+                    || [self.twin(g), self.origin(g), self.origin(next(g))] != [h, end, start]
+                {
+                    return Err(NO_TWIN);
+                }
+                *fitting += 2;
+                let [p, q, r, d] = self.points([start, end, before, self.origin(next(next(g)))]);
                 if in_circle_sign(p, q, r, d).is_lt() {
                     return Err("an edge of it is not Delaunay");
                 }
@@ -102,10 +100,13 @@ impl<'a> Given<'a> {
         Ok([a, b, c])
     }
 
-    /// Checks the rest, if all triangles are right. Returns for each point a half-edge that starts there, or `NONE` if it
+    /// Checks the rest, after all triangles with this sum. Returns for each point a half-edge that starts there, or `NONE` if it
     /// is in no triangle; on the hull, it is the one without a twin.
-    pub(super) fn half_edges(&self) -> Result<Vec<u32>, Refusal> {
+    pub(super) fn half_edges(&self, fitting: usize) -> Result<Vec<u32>, Refusal> {
         let Triangulation { triangles, twins, .. } = self.triangulation;
+        if fitting != twins.len() {
+            return Err(NO_TWIN);
+        }
         let mut half_edges = vec![NONE; self.points.len()];
         for (h, (&point, &twin)) in (0..).zip(triangles.iter().zip(twins)) {
             if twin == NONE || half_edges[point as usize] == NONE {

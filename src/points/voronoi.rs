@@ -81,20 +81,22 @@ impl Triangulation {
 
 fn diagram(given: Given, frame: Frame, threads: &Threads) -> Result<Voronoi, Error> {
     let parts = threads.map(given.triangulation.triangles.len() / 3, |triangles| {
+        let mut fitting = 0;
         let mut outcodes = Vec::with_capacity(triangles.len());
         let mut centres = Vec::with_capacity(triangles.len());
         for triangle in triangles {
-            let corners = given.triangle(triangle)?;
+            let corners = given.triangle(triangle, &mut fitting)?;
             let centre = circumcentre(corners);
             outcodes.push(frame.outcode(centre, corners));
             centres.push(centre.to_array());
         }
-        Ok((centres, outcodes))
+        Ok(((centres, outcodes), fitting))
     });
     let parts = parts.into_iter().collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let (parts, fitting): (Vec<_>, Vec<usize>) = parts.into_iter().unzip();
     let (centres, outcodes): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
     let (centres, outcodes) = (threads.joined(centres), threads.joined(outcodes));
-    let half_edges = given.half_edges().map_err(refused)?;
+    let half_edges = given.half_edges(fitting.iter().sum()).map_err(refused)?;
     let cells = Cells { given, frame, centres: &centres, outcodes: &outcodes };
     let (starts, corners) = cells.all(&half_edges, threads)?;
     Ok(Voronoi { circumcentres: centres.into_flattened(), starts, corners: corners.into_flattened() })
