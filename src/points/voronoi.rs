@@ -64,10 +64,10 @@ impl Triangulation {
         if length % stride != 0 {
             return Err(Error::RaggedArray { array: "positions", length, stride });
         }
-        let frame = Frame::new(bounds)?;
         memory::check(BYTES_PER_POINT * (length / stride) as u64)?;
         let threads = Threads::new(None, self.triangles.len() / 3)?;
         points.refuse_non_finite(Dimension::Two, &threads)?;
+        let frame = Frame::new(bounds)?;
         let pairs = match points {
             Positions::F32(numbers) => {
                 Cow::from_iter(numbers.as_chunks().0.iter().map(|pair| pair.map(f64::from)))

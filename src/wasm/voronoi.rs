@@ -63,7 +63,7 @@ fn box_of(points: &Positions) -> Result<[f64; 4], Error> {
         bounds[axis + 2] = bounds[axis + 2].max(x);
     }
     let [left, bottom, right, top] = bounds;
-    // Coordinates that are not finite have errors of their own.
+    // Coordinates that are not finite have an error of their own.
     if (left < right && bottom < top) || points.iter().any(|x| !x.is_finite()) {
         return Ok(bounds);
     }
