@@ -1,10 +1,11 @@
-// Points to triangles, next to delaunator: `node benches/points.mjs`. On one thread of Node, from the caller's arrays to
-// arrays of the result; prints ratios and milliseconds, medians of runs that alternate. Uses the existing dist/.
-// `node benches/points.mjs 1000 1000000` takes these numbers of points.
+// Points to triangles, next to delaunator, and triangles to Voronoi cells, next to d3-delaunay: `node benches/points.mjs`.
+// On one thread of Node, from the caller's arrays to arrays of the result; prints ratios and milliseconds, medians of runs
+// that alternate. Uses the existing dist/. `node benches/points.mjs 1000 1000000` takes these numbers of points.
 
 import { spawnSync } from 'node:child_process';
 import { performance } from 'node:perf_hooks';
 import { fileURLToPath } from 'node:url';
+import { Delaunay } from 'd3-delaunay';
 import Delaunator from 'delaunator';
 
 const RUNS = 11;
@@ -47,39 +48,60 @@ const CONTENDERS = {
 
 const median = (numbers) => numbers.toSorted((a, b) => a - b)[numbers.length >> 1];
 
-/** Times of calls that alternate. A small set is called so often that the clock is fine enough. */
-async function warm(points) {
-  const calls = Math.ceil(100_000 / points.length);
-  const times = { ours: [], delaunator: [] };
-  const work = { ours: await CONTENDERS.ours(), delaunator: await CONTENDERS.delaunator() };
+/** Times of calls that alternate, so many each that the clock is fine enough. */
+function alternating(work, calls) {
+  const times = { ours: [], theirs: [] };
   for (let run = 0; run < WARM + RUNS; run++) {
     for (const [name, call] of Object.entries(work)) {
       const start = performance.now();
-      for (let i = 0; i < calls; i++) call(points);
+      for (let i = 0; i < calls; i++) call();
       times[name].push((performance.now() - start) / calls);
     }
   }
-  return { ours: times.ours.slice(WARM), delaunator: times.delaunator.slice(WARM) };
+  return { ours: times.ours.slice(WARM), theirs: times.theirs.slice(WARM) };
+}
+
+async function warm(points) {
+  const [ours, theirs] = [await CONTENDERS.ours(), await CONTENDERS.delaunator()];
+  return alternating({ ours: () => ours(points), theirs: () => theirs(points) }, Math.ceil(100_000 / points.length));
+}
+
+/** Times from the triangulation to the circumcentres and the polygons of all cells, in the smallest box. */
+async function cells(points) {
+  const { init, triangulateSync, voronoiSync } = await import('edgeflip/points');
+  await init();
+  const [triangulation, delaunay] = [triangulateSync(points), new Delaunay(points)];
+  const bounds = [Infinity, Infinity, -Infinity, -Infinity];
+  points.forEach((x, i) => {
+    bounds[i % 2] = Math.min(bounds[i % 2], x);
+    bounds[2 + (i % 2)] = Math.max(bounds[2 + (i % 2)], x);
+  });
+  const theirs = () => {
+    const voronoi = delaunay.voronoi(bounds);
+    for (let i = 0; 2 * i < points.length; i++) voronoi.cellPolygon(i);
+  };
+  const ours = () => voronoiSync(points, triangulation, { bounds });
+  return alternating({ ours, theirs }, Math.ceil(100_000 / points.length));
 }
 
 /** Times of first calls, each in a process of its own, after its scripts are loaded. That of ours loads the module. */
 function first(kind, count) {
   const times = { ours: [], delaunator: [] };
   for (let run = 0; run < RUNS; run++) {
-    for (const name of Object.keys(times)) {
+    for (const name of Object.keys(CONTENDERS)) {
       const file = fileURLToPath(import.meta.url);
       const { stdout, stderr } = spawnSync(process.execPath, [file, 'first', name, kind, count], { encoding: 'utf8' });
       if (!(Number(stdout) > 0)) throw new Error(stderr);
       times[name].push(Number(stdout));
     }
   }
-  return times;
+  return { ours: times.ours, theirs: times.delaunator };
 }
 
-const row = ({ ours, delaunator }) => [
-  median(ours.map((time, i) => time / delaunator[i])).toFixed(2),
+const row = ({ ours, theirs }) => [
+  median(ours.map((time, i) => time / theirs[i])).toFixed(2),
   median(ours).toFixed(2),
-  median(delaunator).toFixed(2),
+  median(theirs).toFixed(2),
 ];
 
 if (process.argv[2] === 'first') {
@@ -91,14 +113,22 @@ if (process.argv[2] === 'first') {
   console.log(performance.now() - start);
 } else {
   const given = process.argv.slice(2).map(Number);
+  const counts = given.length > 0 ? given : [1000, 10_000, 100_000, 1_000_000];
   console.log(
     '| points | warm: ours / delaunator | ours, ms | delaunator, ms | first call: ours / delaunator | ms | ms |',
   );
   console.log('|---|---:|---:|---:|---:|---:|---:|');
-  for (const count of given.length > 0 ? given : [1000, 10_000, 100_000, 1_000_000]) {
+  for (const count of counts) {
     for (const kind of Object.keys(KINDS)) {
       const cells = [...row(await warm(pointsOf(kind, count))), ...row(first(kind, count))];
       console.log(`| ${count.toLocaleString('en')} ${kind} | ${cells.join(' | ')} |`);
+    }
+  }
+  console.log('\n| cells of points | ours / d3-delaunay | ours, ms | d3-delaunay, ms |\n|---|---:|---:|---:|');
+  for (const count of counts) {
+    for (const kind of Object.keys(KINDS)) {
+      const cellsOfKind = row(await cells(pointsOf(kind, count)));
+      console.log(`| ${count.toLocaleString('en')} ${kind} | ${cellsOfKind.join(' | ')} |`);
     }
   }
 }

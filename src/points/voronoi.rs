@@ -9,9 +9,10 @@ use crate::system::threads::Threads;
 use crate::{Dimension, Error, Positions, Triangulation};
 use std::borrow::Cow;
 
-/// The most bytes that a point takes at a time: two circumcentres (32), their outcodes (2), a half-edge (4), the start of
-/// the cell (4), and six corners (96) in a list that may have room for as many again.
-const BYTES_PER_POINT: u64 = 234;
+/// The most bytes that a point takes at a time: its coordinates (16), two circumcentres (32) and their outcodes (2), a
+/// half-edge (4), whether it is known (1), where its cell ends (12), and six corners (96) in a list that may grow to
+/// twice its size (192).
+const BYTES_PER_POINT: u64 = 355;
 
 /// The Voronoi diagram of points in a box, from [`Triangulation::voronoi`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,13 +28,11 @@ pub struct Voronoi {
 
 impl Voronoi {
     /// The corners of the cell of a point. There are none if the point equals another with a smaller index, if the cell
-    /// does not reach into the box, or if what it has there has no area in 64-bit floats.
-    ///
-    /// # Panics
-    /// If there is no such point.
+    /// does not reach into the box, if what it has there has no area in 64-bit floats, or if there is no such point.
     pub fn cell(&self, point: usize) -> &[[f64; 2]] {
-        let [start, end] = [point, point + 1].map(|i| self.starts[i] as usize);
-        &self.corners.as_chunks().0[start..end]
+        let range = self.starts.get(point).zip(self.starts.get(point + 1));
+        let corners = self.corners.as_chunks().0;
+        range.and_then(|(&start, &end)| corners.get(start as usize..end as usize)).unwrap_or_default()
     }
 }
 

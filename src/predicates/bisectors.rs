@@ -127,3 +127,61 @@ fn centre_from([a, b, c]: [DVec2; 3], Line { axis, at }: Line) -> Ratio {
     let numerator = from_a.add(&base.mul(&denominator));
     Ratio { numerator, denominator, exponent }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::area_sign;
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Numbers of one size, neighbours in a lattice up to one unit in the last place, and numbers of all sizes.
+    fn points() -> impl Strategy<Value = [DVec2; 3]> {
+        let unit = || -1.0f64..1.0;
+        let nudged = || {
+            (0i32..6, -1i64..2).prop_map(|(i, ulps)| {
+                let x = 0.1 * f64::from(i) + 7.0;
+                f64::from_bits(x.to_bits().wrapping_add_signed(ulps))
+            })
+        };
+        let any = || (unit(), -1074i32..1024).prop_map(|(x, e)| libm::scalbn(x, e));
+        let flat = (unit(), unit(), 0i64..4).prop_map(|(x, y, ulps)| {
+            let p = DVec2::new(x, y);
+            let far = f64::from_bits((3.0 * x).to_bits().wrapping_add_signed(ulps));
+            [p, DVec2::new(far, 3.0 * y), 2.0 * p]
+        });
+        let three = |number: BoxedStrategy<f64>| {
+            [(); 3].map(|()| [number.clone(), number.clone()].prop_map(DVec2::from))
+        };
+        prop_oneof![three(unit().boxed()), three(nudged().boxed()), three(any().boxed()), flat]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn quick_results_are_the_exact_ones(points in points(), axis in 0usize..2, e in -1074i32..1024) {
+            let [a, mut b, mut c] = points;
+            if area_sign(a, b, c).is_lt() {
+                (b, c) = (c, b);
+            }
+            if area_sign(a, b, c).is_gt() {
+                let centre = circumcentre([a, b, c]);
+                prop_assert_eq!(centre, exact_circumcentre([a, b, c]));
+                let order = |at: f64| compare_circumcentre([a, b, c], Line { axis, at });
+                if centre[axis].is_finite() {
+                    prop_assert!(order(centre[axis].next_up()).is_le() && order(centre[axis].next_down()).is_ge());
+                }
+            }
+            prop_assert_eq!(nearer(a, b, c), exactly_nearer(a, b, c));
+            prop_assert_eq!(nearer(a, b, c), nearer(b, a, c).reverse());
+            for at in [c[axis], a[axis], libm::scalbn(0.7, e)] {
+                if a[1 - axis] != b[1 - axis] {
+                    let [p, q] = [a, b].map(|v| [v[axis], v[1 - axis]]);
+                    let line = Line { axis, at };
+                    prop_assert_eq!(crossing(a, b, line), exact_crossing(p, q, at));
+                    prop_assert_eq!(crossing(a, b, line).to_bits(), crossing(b, a, line).to_bits());
+                }
+            }
+        }
+    }
+}
