@@ -49,7 +49,7 @@ impl Triangulation {
     /// let points = Positions::from(vec![1.0, 1.0, 3.0, 1.0, 2.0, 4.0]);
     /// let voronoi = triangulate(&points)?.voronoi(&points, [0.0, 0.0, 4.0, 5.0])?;
     /// assert_eq!(voronoi.circumcentres, [2.0, 7.0 / 3.0]);
-    /// assert_eq!(voronoi.cell(0), [[2.0, 7.0 / 3.0], [0.0, 3.0], [0.0, 0.0], [2.0, 0.0]]);
+    /// assert_eq!(voronoi.cell(0), [[2.0, 0.0], [2.0, 7.0 / 3.0], [0.0, 3.0], [0.0, 0.0]]);
     /// # Ok::<(), edgeflip::Error>(())
     /// ```
     ///

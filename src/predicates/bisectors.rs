@@ -3,7 +3,7 @@
 
 use super::exact::{Differences, Ring, Unbounded, quotient};
 use super::plane::{EPSILON, UNDERFLOW, sign};
-use super::rounded::{Double, Polynomial, cross, in_unit, rounded};
+use super::rounded::{Double, Polynomial, cross, in_unit, rounded, rounded_quickly};
 use glam::DVec2;
 use std::array;
 use std::cmp::Ordering;
@@ -17,8 +17,31 @@ pub(crate) struct Line {
 
 /// The circumcentre of (a, b, c), which is counter-clockwise. A coordinate beyond the range of f64 is infinite.
 #[inline(always)]
-pub(crate) fn circumcentre([a, b, c]: [DVec2; 3]) -> DVec2 {
-    let quick = || {
+pub(crate) fn circumcentre(corners: [DVec2; 3]) -> DVec2 {
+    // Adding 0 turns -0 into 0.
+    quick_circumcentre(corners).unwrap_or_else(|| slow_circumcentre(corners)) + DVec2::ZERO
+}
+
+/// In f64: with p = b - a and q = c - a, the centre is a + (|p|² q.y - |q|² p.y, p.x |q|² - q.x |p|²) / (2 p × q).
+#[inline(always)]
+fn quick_circumcentre([a, b, c]: [DVec2; 3]) -> Option<DVec2> {
+    let (p, q) = (b - a, c - a);
+    let [pp, qq] = [p, q].map(DVec2::length_squared);
+    // At most seven roundings: p and q have one, their squares four, and the products and their difference two.
+    let cross = |ax: f64, ay: f64, bx: f64, by: f64| {
+        let [left, right] = [ax * by, ay * bx];
+        [left - right, left.abs() + right.abs()]
+    };
+    let doubled = cross(p.x, p.y, q.x, q.y).map(|x| 2.0 * x);
+    let x = rounded_quickly(a.x, cross(pp, qq, p.y, q.y), doubled)?;
+    let y = rounded_quickly(a.y, cross(p.x, q.x, pp, qq), doubled)?;
+    // Then the squares are not off by underflow.
+    (pp.min(qq) > 1e-290).then(|| DVec2::new(x, y))
+}
+
+/// The same with twice the precision.
+fn slow_circumcentre([a, b, c]: [DVec2; 3]) -> DVec2 {
+    let slow = || {
         let [p, q] = [b, c].map(|v| [Double::difference(v.x, a.x), Double::difference(v.y, a.y)]);
         let ([px, py, qx, qy], unit) = in_unit([p[0], p[1], q[0], q[1]])?;
         let squares = [cross([px, py], [-py, px]).value, cross([qx, qy], [-qy, qx]).value];
@@ -27,8 +50,7 @@ pub(crate) fn circumcentre([a, b, c]: [DVec2; 3]) -> DVec2 {
         let y = rounded(a.y, cross([px, qx], squares), doubled, unit)?;
         Some(DVec2::new(x, y))
     };
-    // Adding 0 turns -0 into 0.
-    quick().unwrap_or_else(|| exact_circumcentre([a, b, c])) + DVec2::ZERO
+    slow().unwrap_or_else(|| exact_circumcentre([a, b, c]))
 }
 
 #[cold]
@@ -167,6 +189,7 @@ mod tests {
             if area_sign(a, b, c).is_gt() {
                 let centre = circumcentre([a, b, c]);
                 prop_assert_eq!(centre, exact_circumcentre([a, b, c]));
+                prop_assert_eq!(centre, slow_circumcentre([a, b, c]));
                 let order = |at: f64| compare_circumcentre([a, b, c], Line { axis, at });
                 if centre[axis].is_finite() {
                     prop_assert!(order(centre[axis].next_up()).is_le() && order(centre[axis].next_down()).is_ge());

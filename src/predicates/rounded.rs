@@ -152,11 +152,29 @@ pub(super) fn rounded(base: f64, numerator: Polynomial, denominator: Polynomial,
     let quotient = quotient.scaled(unit);
     let sum = Double::sum(base, quotient.high);
     let low = sum.low + quotient.low;
-    let Double { high, low: rest } = Double::sum(sum.high, low);
-    // The sum of the two low parts is rounded, and so is the sum below; the parts of the quotient may have underflowed.
-    let error = 1.01 * (error * unit + 2.0 * U * (low.abs() + U * high.abs())) + f64::MIN_POSITIVE;
-    let is_certain = 4.0 * below < divisor && high + (rest + error) == high && high + (rest - error) == high;
-    is_certain.then_some(high)
+    let sum = Double::sum(sum.high, low);
+    // The sum of the two low parts is rounded, and the parts of the quotient may have underflowed.
+    let error = error * unit + 2.0 * U * low.abs() + f64::MIN_POSITIVE;
+    certain(sum, error, 4.0 * below < divisor)
+}
+
+/// The same in f64, for products of rounded numbers: the numerator and the denominator, each with the sum of the magnitudes
+/// of its terms, are off by at most 8 U of that sum, if nothing but these terms underflows.
+#[inline(always)]
+pub(super) fn rounded_quickly(base: f64, numerator: [f64; 2], denominator: [f64; 2]) -> Option<f64> {
+    let [above, below] = [numerator[1], denominator[1]].map(|size| 8.0 * U * size + f64::MIN_POSITIVE);
+    let quotient = numerator[0] / denominator[0];
+    let divisor = denominator[0].abs();
+    let error = (2.0 * above + 3.0 * quotient.abs() * below) / divisor + 2.0 * U * quotient.abs();
+    certain(Double::sum(base, quotient), error + f64::MIN_POSITIVE, 4.0 * below < divisor)
+}
+
+/// The high part, if every number that is so near to the sum is rounded to it.
+#[inline(always)]
+fn certain(Double { high, low }: Double, error: f64, is_known: bool) -> Option<f64> {
+    // The sums with the error are rounded.
+    let error = 1.01 * (error + 2.0 * U * U * high.abs());
+    (is_known && high + (low + error) == high && high + (low - error) == high).then_some(high)
 }
 
 #[cfg(test)]
