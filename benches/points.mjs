@@ -1,11 +1,12 @@
-// Points to triangles, next to delaunator: `node benches/points.mjs`. On one thread of Node, from the caller's arrays to
-// arrays of the result; prints ratios and milliseconds, medians of runs that alternate. A second table has the sets that
-// are large enough for several threads: on all cores, next to one thread. Uses the existing dist/.
-// `node benches/points.mjs 1000 1000000` takes these numbers of points.
+// Points to triangles, next to delaunator, and triangles to Voronoi cells, next to d3-delaunay: `node benches/points.mjs`.
+// On one thread of Node, from the caller's arrays to arrays of the result; prints ratios and milliseconds, medians of runs
+// that alternate. Another table has the sets that are large enough for several threads: on all cores, next to one thread.
+// Uses the existing dist/. `node benches/points.mjs 1000 1000000` takes these numbers of points.
 
 import { spawnSync } from 'node:child_process';
 import { performance } from 'node:perf_hooks';
 import { fileURLToPath } from 'node:url';
+import { Delaunay } from 'd3-delaunay';
 import Delaunator from 'delaunator';
 
 const RUNS = 11;
@@ -74,18 +75,36 @@ async function onThreads(points) {
   return { threads, times: await alternating(work, points) };
 }
 
+/** Times from the triangulation to the circumcentres and the polygons of all cells, in the smallest box. */
+async function cells(points) {
+  const { init, triangulateSync, voronoiSync } = await import('edgeflip/points');
+  await init();
+  const [triangulation, delaunay] = [triangulateSync(points), new Delaunay(points)];
+  const bounds = [Infinity, Infinity, -Infinity, -Infinity];
+  points.forEach((x, i) => {
+    bounds[i % 2] = Math.min(bounds[i % 2], x);
+    bounds[2 + (i % 2)] = Math.max(bounds[2 + (i % 2)], x);
+  });
+  const theirs = () => {
+    const voronoi = delaunay.voronoi(bounds);
+    for (let i = 0; 2 * i < points.length; i++) voronoi.cellPolygon(i);
+  };
+  const ours = () => voronoiSync(points, triangulation, { bounds });
+  return alternating({ ours, theirs }, points);
+}
+
 /** Times of first calls, each in a process of its own, after its scripts are loaded. That of ours loads the module. */
 function first(kind, count) {
   const times = { ours: [], delaunator: [] };
   for (let run = 0; run < RUNS; run++) {
-    for (const name of Object.keys(times)) {
+    for (const name of Object.keys(CONTENDERS)) {
       const file = fileURLToPath(import.meta.url);
       const { stdout, stderr } = spawnSync(process.execPath, [file, 'first', name, kind, count], { encoding: 'utf8' });
       if (!(Number(stdout) > 0)) throw new Error(stderr);
       times[name].push(Number(stdout));
     }
   }
-  return times;
+  return { ours: times.ours, theirs: times.delaunator };
 }
 
 /** The ratio of two lists of times, and both. */
@@ -122,6 +141,13 @@ if (process.argv[2] === 'first') {
       const { threads, times } = await onThreads(pointsOf(kind, count));
       if (threads > 1)
         console.log(`| ${count.toLocaleString('en')} ${kind} | ${[threads, ...row(times)].join(' | ')} |`);
+    }
+  }
+  console.log('\n| cells of points | ours / d3-delaunay | ours, ms | d3-delaunay, ms |\n|---|---:|---:|---:|');
+  for (const count of counts) {
+    for (const kind of Object.keys(KINDS)) {
+      const cellsOfKind = row(await cells(pointsOf(kind, count)));
+      console.log(`| ${count.toLocaleString('en')} ${kind} | ${cellsOfKind.join(' | ')} |`);
     }
   }
 }

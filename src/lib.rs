@@ -54,6 +54,7 @@ pub use phases::reason::{Reason, Reasons};
 pub use points::options::PointOptions;
 pub use points::session::PointSession;
 pub use points::triangulation::{Triangulation, triangulate, triangulate_with};
+pub use points::voronoi::Voronoi;
 pub use predicates::cos_degrees;
 pub use prepare::constraints::{Constrained, constrained};
 pub use prepare::regions::{Regions, regions};

@@ -18,8 +18,8 @@ const BUDGETS = {
   'edgeflip/three': 6_000,
   'edgeflip/gltf-transform': 6_000,
   // Together never more than 60 KB.
-  'edgeflip_points_bg.wasm': 42 * 1024,
-  'edgeflip/points': 7_000,
+  'edgeflip_points_bg.wasm': 52 * 1024,
+  'edgeflip/points': 8_000,
 };
 
 /** The entry that does not need `edgeflip`: all that it loads at once counts, bundled alone. */

@@ -51,9 +51,10 @@ export interface Places extends Spacing, Partial<Accessors<unknown>>, Threading 
   skipConstraints?: boolean | undefined;
 }
 
-const OPTIONS = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: true, x: true, y: true });
+/** The options of a call that reads points. */
+export const PLACED = namesOf<Spacing & Accessors<unknown>>({ stride: true, offset: true, x: true, y: true });
 /** The options of a call that triangulates. */
-export const TRIANGULATED = [...OPTIONS, ...namesOf<Constraints>({ constraints: true, skipConstraints: true })];
+export const TRIANGULATED = [...PLACED, ...namesOf<Constraints>({ constraints: true, skipConstraints: true })];
 /** The options of one that can use several threads. */
 export const THREADED = [...TRIANGULATED, ...namesOf<Threading>({ threads: true })];
 
@@ -90,7 +91,7 @@ export function coordinatesOf(
  * @param known - The names of the options that are allowed.
  * @throws {@link EdgeflipError} `invalid-input`, `invalid-option`.
  */
-export function placesOf(options: unknown, known = OPTIONS): Places {
+export function placesOf(options: unknown, known = PLACED): Places {
   return read('the options', () => {
     const given = optionsOf(options, known) as Spacing & Partial<Accessors<unknown>> & Threading & Constraints;
     const { stride, offset } = given;

@@ -1,5 +1,5 @@
 /**
- * Triangulates points in the plane, in a WebAssembly module that is loaded on first use.
+ * Triangulates points in the plane and makes their Voronoi diagram, in a WebAssembly module that is loaded on first use.
  *
  * ```ts
  * import { triangulate } from 'edgeflip/points';
@@ -37,6 +37,7 @@ export { PointSession } from './point-session.js';
 export { init } from './points-module.js';
 export type { Triangulation } from './triangulation.js';
 export type { IndexArray, LeftOut, VertexArray } from './types.js';
+export { type Bounds, type TriangulationArrays, type Voronoi, voronoi, voronoiSync } from './voronoi.js';
 
 /**
  * The Delaunay triangulation of points in the plane.

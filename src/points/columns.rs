@@ -3,7 +3,7 @@
 use super::distribution::{Bins, Record, distributed};
 use super::groups::{groups, split, start};
 use super::insertion::insertion_sorts;
-use crate::Positions;
+use crate::{NONE, Positions};
 use crate::system::threads::Threads;
 use glam::DVec2;
 use std::mem::{replace, take};
@@ -31,17 +31,20 @@ impl Columns {
     /// Sorts points in the plane, whose coordinates are finite.
     pub(super) fn of(positions: &Positions, threads: &Threads) -> Self {
         match positions {
-            Positions::F32(numbers) => Self::sorted(numbers.as_chunks().0, threads),
+            Positions::F32(numbers) => {
+                let wide = threads.collect(numbers.len(), |i| f64::from(numbers[i]));
+                Self::sorted(wide.as_chunks().0, threads)
+            }
             Positions::F64(numbers) => Self::sorted(numbers.as_chunks().0, threads),
         }
     }
 
-    fn sorted<T: Copy + Into<f64> + Sync>(given: &[[T; 2]], threads: &Threads) -> Self {
+    fn sorted(given: &[[f64; 2]], threads: &Threads) -> Self {
         let mut columns = Self::default();
         columns.reserve(given.len());
         if !given.is_empty() {
             // Adding 0 turns -0 into 0.
-            let point = |&[x, y]: &[T; 2]| DVec2::new(x.into(), y.into()) + DVec2::ZERO;
+            let point = |&pair: &[f64; 2]| DVec2::from(pair) + DVec2::ZERO;
             let records = |piece: Range<usize>| {
                 let indices = piece.start as u32..;
                 indices.zip(&given[piece]).map(|(index, pair)| Record { point: point(pair), index })
@@ -50,8 +53,21 @@ impl Columns {
             columns.add_all(&mut records, &ends, MOST_LEVELS, threads);
         }
         columns.join_single();
-        threads.sort(&mut columns.duplicates);
+        if !columns.duplicates.is_empty() {
+            columns.sort_duplicates(given.len());
+        }
         columns
+    }
+
+    /// Each point has one pair at most.
+    fn sort_duplicates(&mut self, count: usize) {
+        let mut equal = vec![NONE; count];
+        for &[index, first] in &self.duplicates {
+            equal[index as usize] = first;
+        }
+        self.duplicates.clear();
+        let pairs = (0..).zip(equal).filter(|&(_, first)| first != NONE);
+        self.duplicates.extend(pairs.map(|(index, first)| [index, first]));
     }
 
     /// Adds columns, which are not sorted yet and have these ends, to the right of the others.

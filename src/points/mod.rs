@@ -1,11 +1,14 @@
 //! The Delaunay triangulation of points in the plane. The points are sorted into columns; each column is triangulated by
-//! halving it in y, and the columns are merged by halving their row in x.
+//! halving it in y, and the columns are merged by halving their row in x. From the triangulation comes the Voronoi
+//! diagram: circumcentres, and cells that are cut along a box.
 
+mod cells;
 mod changes;
 mod circle;
 mod columns;
 mod constraints;
 mod distribution;
+mod frame;
 mod groups;
 mod halves;
 mod insertion;
@@ -18,4 +21,6 @@ pub(crate) mod session;
 mod slots;
 mod stars;
 pub(crate) mod triangulation;
+mod verify;
+pub(crate) mod voronoi;
 mod walk;

@@ -259,7 +259,7 @@ impl Net {
         ends.filter(move |&end| {
             end != GHOST && {
                 let [p, q] = self.stars.points([end, vertex]);
-                is_wanted(nearer(place, p, q))
+                is_wanted(nearer(p, q, place))
             }
         })
     }

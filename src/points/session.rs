@@ -217,7 +217,7 @@ impl PointSession {
             Some(net) => Some(net.nearest(place)),
             None => {
                 let present = (0..self.len()).filter(|&i| self.is_present[i]);
-                let nearest = present.min_by(|&i, &j| nearer(place, self.given[i], self.given[j]));
+                let nearest = present.min_by(|&i, &j| nearer(self.given[i], self.given[j], place));
                 nearest.map(|i| i as u32)
             }
         }

@@ -157,6 +157,48 @@ impl<L: Limbs> Ring for Int<L> {
     }
 }
 
+/// `numerator / denominator * 2^exponent`, rounded to the nearest f64, ties to even; infinite if it is too large. The
+/// denominator is not 0.
+pub(super) fn quotient(numerator: &Unbounded, denominator: &Unbounded, exponent: i32) -> f64 {
+    if numerator.sign().is_eq() {
+        return 0.0;
+    }
+    // With the same highest bit, each is less than twice the other.
+    let width =
+        |x: &Unbounded| 64 * x.len as i32 - x.used().last().map_or(0, |limb| limb.leading_zeros() as i32);
+    let shift = width(denominator) - width(numerator);
+    let shifted = |x: &Unbounded, shift: i32| x.mul(&Unbounded::new(1, shift.max(0) as u32));
+    let (rest, divisor) = (shifted(numerator, shift), shifted(denominator, -shift));
+    let (mut rest, divisor) = (rest.used().to_vec(), divisor.used());
+    rest.push(0);
+    // The first 64 bits of the quotient, of which the first may be 0. The last stands for all that follow.
+    let mut bits = 0u64;
+    for _ in 0..64 {
+        let is_less = rest.last() == Some(&0) && rest[..divisor.len()].iter().rev().lt(divisor.iter().rev());
+        bits = bits << 1 | u64::from(!is_less);
+        if !is_less {
+            let mut borrow = false;
+            for (limb, y) in rest.iter_mut().zip(divisor.iter().chain([&0])) {
+                let (difference, first) = limb.overflowing_sub(*y);
+                let (difference, second) = difference.overflowing_sub(u64::from(borrow));
+                (*limb, borrow) = (difference, first | second);
+            }
+        }
+        let mut carry = 0;
+        for limb in &mut rest {
+            (*limb, carry) = (*limb << 1 | carry, *limb >> 63);
+        }
+    }
+    bits |= u64::from(rest.iter().any(|&limb| limb != 0));
+    let unit = exponent - shift - 63;
+    // A number has 53 bits, and no bit below 2^-1074. If more than 65 are dropped, nothing is left, as of 65.
+    let dropped = (11 - bits.leading_zeros() as i32).max(-1074 - unit).min(65);
+    let odd = u128::from(bits) >> dropped & 1;
+    let kept = (u128::from(bits) + (1 << (dropped - 1)) - 1 + odd) >> dropped;
+    let magnitude = libm::scalbn(kept as f64, unit + dropped);
+    if numerator.negative == denominator.negative { magnitude } else { -magnitude }
+}
+
 /// Mantissa and exponent with `x = mantissa * 2^exponent`. The mantissa is odd; zero is `(0, i32::MAX)`, so that it
 /// never has the smallest exponent.
 pub(super) fn decode(x: f64) -> (i64, i32) {
@@ -193,7 +235,7 @@ pub(super) struct Differences<const K: usize> {
     /// `None` if all differences are exact in f64: then the minuends are the differences.
     subtrahends: Option<[(i64, i32); K]>,
     /// The smallest exponent.
-    unit: i32,
+    pub(super) unit: i32,
     /// Each difference is below `2^bits` in magnitude.
     pub(super) bits: u32,
 }

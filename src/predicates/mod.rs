@@ -5,15 +5,18 @@
 //! normals are n1 = p × q and n2 = s × r. The numerators of the cosines of the opposite angles are dot1 = p·q and dot2
 //! = s·r. After the flip, the triangles (a, d, c) and (b, c, d) have the normals r × p and q × s.
 
+mod bisectors;
 mod cosine;
 mod exact;
 mod plane;
+mod rounded;
 mod space;
 
+pub(crate) use bisectors::{Line, circumcentre, compare_circumcentre, crossing, nearer};
 pub use cosine::cos_degrees;
 #[cfg(feature = "gpu")]
 pub(crate) use cosine::cosine_fraction;
-pub(crate) use plane::{area_sign, cross_sign, in_circle_filter, in_circle_sign, nearer, total_area_sign};
+pub(crate) use plane::{area_sign, cross_sign, in_circle_filter, in_circle_sign, total_area_sign};
 pub(crate) use space::{Quad, has_area, obtuse};
 
 #[cfg(test)]

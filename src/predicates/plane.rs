@@ -6,12 +6,12 @@ use std::array;
 use std::cmp::Ordering;
 
 /// Unit roundoff of f64.
-const EPSILON: f64 = f64::EPSILON / 2.0;
+pub(super) const EPSILON: f64 = f64::EPSILON / 2.0;
 
 /// A generous bound for the error that underflow adds to a filter. A product that underflows is off by at most η =
 /// 2^-1075; sums and differences do not underflow. If anything overflows, the bound of the filter is infinite or NaN,
 /// and the filter decides nothing.
-const UNDERFLOW: f64 = f64::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// With differences up to this width, degree 2 fits i64 and degree 4 fits i128: a cross or dot product of two such
 /// vectors is below 2^61, the product of two of these is below 2^122, and a sum of two products is below 2^123.
@@ -129,29 +129,6 @@ pub(crate) fn cross_sign(u: DVec2, v: DVec2, p: DVec2, q: DVec2) -> Ordering {
         return sign(value);
     }
     doubled_area_sign([(v.x, u.x), (v.y, u.y), (q.x, p.x), (q.y, p.y)])
-}
-
-/// Whether `p` is nearer to a place than `q`, as far away, or farther: an order of the distances.
-pub(crate) fn nearer(place: DVec2, p: DVec2, q: DVec2) -> Ordering {
-    let (u, v) = (p - place, q - place);
-    let (left, right) = (u.dot(u), v.dot(v));
-    let value = left - right;
-    // The bound of `area_sign`: a dot product of two differences is off by as much as its difference of two products.
-    if value.abs() > 8.0 * EPSILON * (left + right) + UNDERFLOW {
-        return sign(value);
-    }
-    let differences = Differences::new([(p.x, place.x), (p.y, place.y), (q.x, place.x), (q.y, place.y)]);
-    if differences.bits <= WIDE_BITS {
-        difference_of_squares::<Bounded<20>>(&differences.integers()).sign()
-    } else {
-        difference_of_squares::<Unbounded>(&differences.integers()).sign()
-    }
-}
-
-/// The polynomial of [`nearer`] over exact differences u, v (x and y of each).
-fn difference_of_squares<R: Ring>([ux, uy, vx, vy]: &[R; 4]) -> R {
-    let square = |x: &R, y: &R| x.mul(x).add(&y.mul(y));
-    square(ux, uy).sub(&square(vx, vy))
 }
 
 /// The sign of the sum of the areas of `count` triangles.
@@ -295,6 +272,6 @@ fn in_circle<R: Ring>(differences: &[R; 8]) -> Ordering {
 }
 
 #[inline]
-fn sign(x: f64) -> Ordering {
+pub(super) fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }

@@ -24,5 +24,7 @@ pub mod threads;
 #[cfg(feature = "js-untangle")]
 pub mod untangle;
 mod values;
+#[cfg(all(feature = "js-points", not(feature = "js-points-threads")))]
+pub mod voronoi;
 #[cfg(feature = "js-webgl2")]
 pub mod webgl2;

@@ -31,7 +31,12 @@ pub(super) fn triangulation_object(triangulation: &Triangulation) -> JsValue {
 /// The exception for an error. What other modules call a vertex is a point here.
 pub(super) fn in_words_of_points(error: Error) -> JsValue {
     match error {
-        Error::NonFinite { .. } => coded(error.code(), &error.to_string().replacen("vertex", "point", 1)),
+        Error::NonFinite { vertex, .. } => {
+            let message = error.to_string();
+            let place = format!("vertex {vertex}");
+            let rest = message.strip_prefix(&*place).unwrap_or(&message);
+            coded(error.code(), &format!("point {vertex}{rest}"))
+        }
         error => thrown(error),
     }
 }

@@ -1,9 +1,11 @@
 //! Points are triangulated as an oracle of integers of any size defines it, and as another crate does, up to ties.
 
+mod cells;
 mod constraints;
 mod oracle;
 mod session;
 mod threads;
+mod voronoi;
 
 use crate::points_of::{KINDS, Kind, points};
 use edgeflip::{Error, NONE, Positions, Triangulation, triangulate};

@@ -76,6 +76,9 @@ test('the examples run', () => {
     /^6818 points; \d+ flips brought the borders in; (\d+) triangles of states/,
   );
   assert.equal(readFileSync(map, 'utf8').split('<path').length - 1, Number(count));
+  const cells = join(folder, 'voronoi.svg');
+  assert.match(example('voronoi', cells), /^400 cells with 2\d{3} corners\n$/);
+  assert.equal(readFileSync(cells, 'utf8').match(/<polygon points="[\d.,]+"/g).length, 400);
   const [input, output] = ['thin.obj', 'delaunay.obj'].map((name) => join(folder, name));
   writeFileSync(input, 'v -3 0 0\nv 0 -1 0\nv 3 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nf 1 3 4\n');
   assert.equal(example('file', input, output), '1 flips\n');

@@ -196,6 +196,41 @@ const pointEntries = [points.triangulate, points.triangulateSync].flatMap((work)
   ];
 });
 
+const arrays = ['triangles', 'twins', 'hull', 'duplicates'];
+const voronoiEntries = [points.voronoi, points.voronoiSync].flatMap((work) => {
+  const call = async (...args) => work(...args);
+  const entry = (given, options, paths) => ({
+    name: work.name,
+    call,
+    args: () => [given(), points.triangulateSync(given(), options()), { ...options(), bounds: [0, 0, 1, 1] }],
+    paths: [
+      [0],
+      [1],
+      ...arrays.flatMap((name) => [
+        [1, name],
+        [1, name, 0],
+        [1, name, 'length'],
+      ]),
+      [2, 'bounds'],
+      ...paths,
+    ],
+  });
+  return [
+    entry(inPlane, () => ({ stride: 3, offset: 1 }), [
+      [2],
+      [2, 'stride'],
+      [2, 'offset'],
+      [2, 'bounds', 3],
+      [2, 'unknown'],
+    ]),
+    entry(pairs, accessors, [
+      [0, 3],
+      [2, 'x'],
+      [2, 'y'],
+    ]),
+  ];
+});
+
 /** Calls a function, and returns how its promise settled. */
 async function outcomeOf(call, args, isTaken) {
   const asked = (async () => call(...args))();
@@ -254,9 +289,30 @@ test('on two threads', async () => {
 test('points', async () => {
   await points.init();
   const expected = points.triangulateSync(inPlane());
-  await attack(pointEntries, 0.1 * CASES);
+  await attack([...pointEntries, ...voronoiEntries], 0.1 * CASES);
   assert.deepEqual(await points.triangulate(inPlane()), expected);
   assert.deepEqual(uncaught, []);
+});
+
+/** One or two numbers of a triangulation are replaced, so that the walks around the points could go anywhere. */
+test('triangulations with wrong numbers', () => {
+  const number = fc.oneof(fc.nat(60), fc.constantFrom(-1, 2 ** 31, 2 ** 32 - 1));
+  const change = fc.tuple(fc.constantFrom(...arrays), fc.nat(), number);
+  const coordinates = fc.array(fc.nat(9), { minLength: 0, maxLength: 40 }).map((list) => list.slice(list.length % 2));
+  const bounds = [0.5, 0.5, 7, 8];
+  const property = fc.property(coordinates, fc.array(change, { minLength: 1, maxLength: 2 }), (numbers, changes) => {
+    const given = points.triangulateSync(numbers);
+    const expected = points.voronoiSync(numbers, given, { bounds });
+    for (const [name, at, value] of changes) given[name][at % given[name].length] = value;
+    try {
+      const { starts } = points.voronoiSync(numbers, given, { bounds });
+      assert.equal(starts.length, expected.starts.length);
+    } catch (error) {
+      assert.ok(error instanceof EdgeflipError && error.code !== 'internal', String(error?.stack ?? error));
+    }
+    assert.deepEqual(points.voronoiSync(numbers, points.triangulateSync(numbers), { bounds }), expected);
+  });
+  fc.assert(property, { numRuns: 0.2 * CASES, seed });
 });
 
 /** In a worker that has loaded no module: none of the hostile values loads one. */

@@ -17,9 +17,9 @@ const sets = {
   line: [0, 0, 1, 1, 2, 2],
 };
 
-/** Runs in the page or in a worker: all results of all sets, as text. */
+/** Runs in the page or in a worker: all results of all sets, with their cells, as text. */
 const everything = async (url, sets) => {
-  const { triangulate, triangulateSync } = await import(url);
+  const { triangulate, triangulateSync, voronoi, voronoiSync } = await import(url);
   const texts = [];
   for (const [name, numbers] of Object.entries(sets)) {
     const points = (name === 'singles' ? Float32Array : Float64Array).from(numbers);
@@ -27,7 +27,11 @@ const everything = async (url, sets) => {
     const again = triangulateSync(points);
     const lists = [result, again].map((all) => Object.values(all).map((list) => (list ? `${list}` : '')));
     if (`${lists[0]}` !== `${lists[1]}`) throw new Error(`${name} without a promise`);
-    texts.push(lists[0].join('\n'));
+    const box = { bounds: [0.1, 0.2, 1e6, 2e6] };
+    const cells = [await voronoi(points, result, box), voronoiSync(points, again, box)];
+    const [bits, same] = cells.map((all) => Object.values(all).map((list) => new Uint32Array(list.buffer).join()));
+    if (`${bits}` !== `${same}`) throw new Error(`${name}: cells without a promise`);
+    texts.push([...lists[0], ...bits].join('\n'));
   }
   return texts;
 };

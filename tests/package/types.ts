@@ -37,6 +37,9 @@ import {
   type Triangulation,
   triangulate,
   triangulateSync,
+  type Voronoi,
+  voronoi,
+  voronoiSync,
 } from 'edgeflip/points';
 import { FlipSession as AwaySession, makeDelaunay as makeAway, type WorkerOptions } from 'edgeflip/worker';
 
@@ -165,6 +168,25 @@ export async function triangulated(places: readonly { lon: number; lat: number }
   return triangles;
 }
 
+/** Cells of points in every form. */
+export async function celled(places: readonly { lon: number; lat: number }[]): Promise<Float64Array> {
+  const byPlace = { x: ({ lon }: { lon: number }) => lon, y: ({ lat }: { lat: number }) => lat };
+  const triangulation = await triangulate(places, byPlace);
+  const arrays = { triangles: [0, 1, 2], twins: new Int32Array(3), hull: new Uint8Array(3), duplicates: [] };
+  const all: Voronoi[] = [
+    await voronoi(places, triangulation, { ...byPlace, bounds: [-180, -90, 180, 90] }),
+    voronoiSync(places, triangulation, byPlace),
+    await voronoi(new Float32Array(6), arrays),
+    voronoiSync(new Int16Array(9), arrays, { stride: 3, bounds: new Float64Array(4) }),
+    voronoiSync([0, 0, 1, 0, 0, 1], arrays, { bounds: undefined }),
+    await voronoi([[0, 0], new Float32Array(2)] as const, arrays, { bounds: [0, 0, 1, 1] as const }),
+  ];
+  const { circumcentres, starts, corners } = all[0]!;
+  const [start, end]: (number | undefined)[] = [...starts];
+  console.log(circumcentres.length, all.length);
+  return corners.subarray(start, end);
+}
+
 export function codeOf(error: unknown): ErrorCode | undefined {
   return error instanceof EdgeflipError ? error.code : undefined;
 }
@@ -195,6 +217,10 @@ void triangulate([{ x: 0, y: 0 }]);
 void triangulateSync([{ lon: '0' }], { x: ({ lon }) => lon, y: () => 0 });
 // @ts-expect-error: a stride is for an array of numbers
 void triangulate([[0, 0]], { stride: 3 });
+// @ts-expect-error: a diagram needs the triangulation
+void voronoi([[0, 0]], { bounds: [0, 0, 1, 1] });
+// @ts-expect-error: a box is four numbers
+void voronoi([[0, 0]], triangulateSync([[0, 0]]), { bounds: '0 0 1 1' });
 // @ts-expect-error: a call without a promise has one thread
 void triangulateSync([[0, 0]], { threads: 2 });
 // @ts-expect-error: this entry has no module of engines
