@@ -20,6 +20,7 @@ const BUDGETS = {
   // Together never more than 60 KB.
   'edgeflip_points_bg.wasm': 52 * 1024,
   'edgeflip/points': 8_000,
+  'edgeflip_point_session_bg.wasm': 50 * 1024,
 };
 
 /** The entry that does not need `edgeflip`: all that it loads at once counts, bundled alone. */
@@ -83,10 +84,9 @@ export async function measured() {
   const all = (names, from = text) =>
     Buffer.concat([...names].map((name) => from.get(name.split('target/sizes/')[1]).contents));
   return new Map([
-    ...['', '_threads', '_webgl2', '_untangle', '_audit', '_files', '_points', '_points_threads'].map((name) => [
-      `edgeflip${name}_bg.wasm`,
-      readFileSync(`${root}dist/wasm/edgeflip${name}_bg.wasm`),
-    ]),
+    ...['', '_threads', '_webgl2', '_untangle', '_audit', '_files', '_points', '_points_threads', '_point_session'].map(
+      (name) => [`edgeflip${name}_bg.wasm`, readFileSync(`${root}dist/wasm/edgeflip${name}_bg.wasm`)],
+    ),
     ...Object.keys(others).map((entry) => {
       const isWhole = ['edgeflip', 'edgeflip/inline'].includes(entry);
       return [entry, all([...scripts(entry)].filter((name) => isWhole || !core.has(name)))];

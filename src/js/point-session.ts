@@ -1,11 +1,11 @@
 /** Points that move, come and go; part of the entry `edgeflip/points`. */
 
-import * as wasm from './wasm/edgeflip_point_session.js';
+import type { PointSession as ModuleSession } from './wasm/edgeflip_point_session.js';
 import { type Accessors, coordinatesOf, type Places, placesOf, type Spacing } from './coordinates.js';
 import { dispose } from './dispose.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, isWhole, itselfOf, shown } from './given.js';
-import { isSessionLoaded, loadSession } from './points-module.js';
+import { loadSession, sessionClass } from './points-module.js';
 import { type Triangulation, triangulationOf } from './triangulation.js';
 import type { VertexArray } from './types.js';
 
@@ -26,11 +26,11 @@ import type { VertexArray } from './types.js';
  * @typeParam Points - What {@link PointSession.update} takes: what {@link PointSession.create} took.
  */
 export class PointSession<Points = VertexArray | readonly number[] | readonly ArrayLike<number>[]> {
-  readonly #session: wasm.PointSession;
+  readonly #session: ModuleSession;
   readonly #places: Places;
   #isFreed = false;
 
-  private constructor(session: wasm.PointSession, places: Places) {
+  private constructor(session: ModuleSession, places: Places) {
     this.#session = session;
     this.#places = places;
   }
@@ -53,10 +53,10 @@ export class PointSession<Points = VertexArray | readonly number[] | readonly Ar
   ): Promise<PointSession<readonly P[] | (VertexArray & ArrayLike<P>)>>;
   static async create(points: unknown, options: unknown = {}): Promise<unknown> {
     const places = placesOf(options);
-    const coordinates = coordinatesOf(points, places, isSessionLoaded() ? itselfOf : copyOf);
-    if (!isSessionLoaded()) await loadSession();
+    const coordinates = coordinatesOf(points, places, sessionClass() ? itselfOf : copyOf);
+    const Session = sessionClass() ?? (await loadSession());
     try {
-      return new PointSession(new wasm.PointSession(coordinates), places);
+      return new PointSession(new Session(coordinates), places);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -164,7 +164,7 @@ export class PointSession<Points = VertexArray | readonly number[] | readonly Ar
   }
 
   /** Calls the module. After an exception that is none of its errors, the session may be half changed. */
-  #call<T>(work: (session: wasm.PointSession) => T): T {
+  #call<T>(work: (session: ModuleSession) => T): T {
     if (this.#isFreed) throw new EdgeflipError('freed', 'the session has been freed');
     try {
       return work(this.#session);

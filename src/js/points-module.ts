@@ -1,7 +1,7 @@
 /** The WebAssembly modules of the entry `edgeflip/points`. */
 
-import initSession from './wasm/edgeflip_point_session.js';
 import initModule from './wasm/edgeflip_points.js';
+import type { PointSession as ModuleSession } from './wasm/edgeflip_point_session.js';
 import { EdgeflipError } from './error.js';
 import { compile, initOf, loader } from './module.js';
 
@@ -36,20 +36,26 @@ export async function loadThreads(): Promise<WebAssembly.Module> {
   return compiled;
 }
 
-let isSessionStarted = false;
+let session: typeof ModuleSession | undefined;
 
-/** Whether the module of points that move is loaded. */
-export const isSessionLoaded = (): boolean => isSessionStarted;
+/** The class of the module of points that move, if it is loaded. */
+export const sessionClass = (): typeof ModuleSession | undefined => session;
 
-/** Loads the module of points that move. */
-export const loadSession = loader(
+const startSession = loader(
   async (source) => {
-    await initSession(source);
-    isSessionStarted = true;
+    const { default: init, PointSession } = await import('./wasm/edgeflip_point_session.js');
+    await init(source);
+    session = PointSession;
   },
   'edgeflip_point_session_bg.wasm',
   () => new URL('./wasm/edgeflip_point_session_bg.wasm', import.meta.url),
 );
+
+/** Loads the module of points that move. */
+export async function loadSession(): Promise<typeof ModuleSession> {
+  await startSession();
+  return session!;
+}
 
 /**
  * Loads the WebAssembly modules that `sources` names, or that of one thread if it names none. The calls that return a
@@ -60,7 +66,7 @@ export const loadSession = loader(
  *
  * @throws {@link EdgeflipError} `load-failed`; `invalid-input` and `invalid-option` about `sources`.
  */
-export const init = initOf('points', { points: load, threads: compileThreads, session: loadSession });
+export const init = initOf('points', { points: load, threads: compileThreads, session: startSession });
 
 /** @throws {@link EdgeflipError} `load-failed` if the module of one thread is not loaded. */
 export function checkLoaded(caller: string): void {

@@ -3,8 +3,8 @@
 use super::distribution::{Bins, Record, distributed};
 use super::groups::{groups, split, start};
 use super::insertion::insertion_sorts;
-use crate::{NONE, Positions};
 use crate::system::threads::Threads;
+use crate::{NONE, Positions};
 use glam::DVec2;
 use std::mem::{replace, take};
 use std::ops::Range;

@@ -146,7 +146,7 @@ test('a wrong number of threads is an error, for few points too; a call without 
     }
     assert.throws(() => triangulateSync(points, { threads: 2 }), {
       code: 'invalid-option',
-      message: 'threads is not an option; there are stride, offset, x, y',
+      message: 'threads is not an option; there are stride, offset, x, y, constraints, skipConstraints',
     });
     assert.equal(triangulateSync(points, { threads: undefined }).threads, 1);
   }
