@@ -1,10 +1,16 @@
-//! A session on the CPU never takes more memory than it checks for before it starts. This is a program of its own,
-//! because its allocator counts the bytes of a whole process.
+//! A session on the CPU, and a triangulation of points, never take more memory than they check for before they start. This
+//! is a program of its own, because its allocator counts the bytes of a whole process.
 // Clippy's exemption for tests does not reach their shared functions.
 #![allow(clippy::unwrap_used)]
 #![allow(unsafe_code, reason = "the trait for allocators is unsafe")]
 
-use edgeflip::{Backend, Dimension, Edges, Mesh, Options, Order, Session, families::by_name};
+#[path = "points/mod.rs"]
+mod points_of;
+
+use edgeflip::{
+    Backend, Dimension, Edges, Mesh, Options, Order, PointOptions, PointSession, Positions, Session,
+    families::by_name, triangulate_with,
+};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -20,12 +26,15 @@ static COUNTER: Counter = Counter;
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
 static ONLY_ASKED_FOR: AtomicUsize = AtomicUsize::new(usize::MAX);
+static ASKED_FOR: AtomicUsize = AtomicUsize::new(0);
 
 // SAFETY: the system's allocator keeps the contract.
 unsafe impl GlobalAlloc for Counter {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if layout.size() < ONLY_ASKED_FOR.load(Relaxed) {
             MOST.fetch_max(NOW.fetch_add(layout.size(), Relaxed) + layout.size(), Relaxed);
+        } else {
+            ASKED_FOR.fetch_max(layout.size(), Relaxed);
         }
         // SAFETY: as above.
         unsafe { System.alloc(layout) }
@@ -104,10 +113,61 @@ fn moves_take_what_they_ask_for() {
     assert!(most > 0.8, "far more is asked for than is ever taken: {most}");
 }
 
+/// Does some work, whose check asks for more bytes than `least`, and no other allocation. Returns the part of these that the
+/// work takes.
+fn part_of<T>(what: &str, least: usize, work: impl FnOnce() -> T) -> (f64, T) {
+    let base = NOW.load(Relaxed);
+    MOST.store(base, Relaxed);
+    ASKED_FOR.store(0, Relaxed);
+    ONLY_ASKED_FOR.store(least, Relaxed);
+    let result = work();
+    ONLY_ASKED_FOR.store(usize::MAX, Relaxed);
+    let (taken, asked) = (MOST.load(Relaxed) - base, ASKED_FOR.load(Relaxed));
+    assert!(taken <= asked + SLACK as usize, "{what}: {taken} bytes taken, {asked} asked for");
+    (taken as f64 / asked as f64, result)
+}
+
+fn points_take_what_they_ask_for() {
+    let n = 50_000;
+    let mut most = [0.0f64; 4];
+    for (name, kind) in points_of::KINDS {
+        let points = points_of::points(kind, n, 1);
+        let wide = Positions::from(points.as_flattened().to_vec());
+        for (positions, threads) in [(&wide, 1), (&wide, 3), (&Positions::from(wide.to_f32()), 1)] {
+            let threads = NonZeroUsize::new(threads);
+            // Through many points, a constraint would be many edges.
+            let few_edges = ["uniform", "circle", "sorted"].contains(&name);
+            let ring: Vec<_> = (0..n as u32).map(|i| [i, (i + 1) % n as u32]).filter(|_| few_edges).collect();
+            for constraints in [Vec::new(), ring] {
+                let kind = usize::from(!constraints.is_empty());
+                let options = PointOptions { threads, constraints, skips_constraints: true };
+                let work = || triangulate_with(positions, &options).unwrap();
+                let (part, _) = part_of(name, 100 * n, work);
+                most[kind] = most[kind].max(part);
+            }
+            let turned = Positions::from(points.iter().flat_map(|&[x, y]| [y, x]).collect::<Vec<f64>>());
+            let session = || {
+                let mut session = PointSession::new(positions, threads).unwrap();
+                session.triangulation();
+                session.update(&turned).unwrap();
+                session.triangulation();
+            };
+            let (part, ()) = part_of(name, 150 * n, session);
+            most[2] = most[2].max(part);
+        }
+        let triangulation = triangulate_with(&wide, &PointOptions::default()).unwrap();
+        let (part, _) =
+            part_of(name, 200 * n, || triangulation.voronoi(&wide, [0.0, 0.0, 1.0, 1.0]).unwrap());
+        most[3] = most[3].max(part);
+    }
+    assert!(most.iter().all(|&most| most > 0.8), "far more is asked for than is ever taken: {most:?}");
+}
+
 /// One test, since the program has only one peak.
 #[test]
 fn sessions_take_what_they_ask_for() {
     moves_take_what_they_ask_for();
+    points_take_what_they_ask_for();
     let mut most = 0.0f64;
     for spec in [
         "random 120",

@@ -42,28 +42,29 @@ enum Way {
     },
 }
 
-/// What was brought in: the edges of the constraints with their indices, and the constraints that were left out.
-#[derive(Default)]
+/// What was brought in.
 pub(super) struct Brought {
-    pub(super) edges: Vec<(usize, [u32; 2])>,
-    /// The index of each, and the edge that it crosses.
-    left_out: Vec<(usize, [u32; 2])>,
+    /// The edges of the constraints: the index of the constraint, and the ends.
+    pub(super) edges: Vec<[u32; 3]>,
+    /// The constraints that were left out: the index of each, and the ends of the edge that it crosses.
+    left_out: Vec<[u32; 3]>,
 }
 
 impl Constraints<'_> {
     /// Brings them in, one after another. Without `skips`, the first that cannot be brought in is the last.
     pub(super) fn bring_in(&self, stars: &mut Stars) -> Brought {
-        let mut brought = Brought::default();
-        for (index, &ends) in self.given.iter().enumerate() {
+        let mut brought = Brought { edges: Vec::with_capacity(self.given.len()), left_out: Vec::new() };
+        for (index, &ends) in (0..).zip(self.given) {
             match stars.walk(ends) {
                 Ok(parts) => {
-                    brought.edges.extend(parts.iter().map(|part| (index, part.ends)));
+                    brought.edges.extend(parts.iter().map(|&Part { ends: [a, b], .. }| [index, a, b]));
                     let mut changed = Vec::new();
                     parts.into_iter().for_each(|part| stars.bring_in(part, &mut changed));
                     stars.make_delaunay(changed);
                 }
                 Err(crossed) => {
-                    brought.left_out.push((index, [crossed, next(crossed)].map(|h| stars.slots.origin(h))));
+                    let [a, b] = [crossed, next(crossed)].map(|h| stars.slots.origin(h));
+                    brought.left_out.push([index, a, b]);
                     if !self.skips {
                         break;
                     }
@@ -81,20 +82,20 @@ impl Brought {
             return Vec::new();
         }
         // The ends of each edge, and the constraint that it is a part of.
-        let row = |&(index, ends): &(usize, [u32; 2])| {
-            let [a, b] = ordered(ends);
-            [a, b, index as u32, 0]
+        let row = |&[index, a, b]: &[u32; 3]| {
+            let [a, b] = ordered([a, b]);
+            [a, b, index, 0]
         };
         let mut origins: Vec<[u32; 4]> = self.edges.iter().map(row).collect();
         origins.sort_unstable();
-        let reason = |&(index, crossed): &(usize, [u32; 2])| {
-            let first = origins.partition_point(|row| row[..2] < ordered(crossed)[..]);
-            let other = origins.get(first).map_or(0, |row| row[2] as usize);
-            let [[a, b], [c, d]] = [given[index], given[other]];
+        let reason = |&[index, a, b]: &[u32; 3]| {
+            let first = origins.partition_point(|row| row[..2] < ordered([a, b])[..]);
+            let other = origins.get(first).map_or(0, |row| row[2]);
+            let [[a, b], [c, d]] = [index, other].map(|i| given[i as usize]);
             let reason = format!(
                 "constraint {index} between {a} and {b} crosses constraint {other} between {c} and {d}"
             );
-            LeftOut { index, reason }
+            LeftOut { index: index as usize, reason }
         };
         self.left_out.iter().map(reason).collect()
     }

@@ -18,9 +18,13 @@ const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 /// their twins (48), the half-edges with which these begin (8), and what the loops count (4).
 const BYTES_PER_POINT: u64 = 136;
 
-/// The most bytes that a constraint of one edge takes: its ends (8), its edge with its index (24), the same to look for
-/// the edge that another crosses (24), and the edge in the result (8).
-const BYTES_PER_CONSTRAINT: u64 = 64;
+/// The most bytes that a constraint of one edge takes: its ends (8), its edge (12), the same to look for the edge that
+/// another crosses (16), and the edge in the result (8).
+const BYTES_PER_CONSTRAINT: u64 = 44;
+
+/// The most bytes that a constraint takes that is left out: its ends (8), itself in a list that grows (36), and its reason
+/// (160).
+const BYTES_PER_SKIPPED: u64 = 204;
 
 /// A Delaunay triangulation of points in the plane, from [`triangulate`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -91,7 +95,8 @@ pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Tr
     options.check(count)?;
     let threads = Threads::new(options.threads, 2 * count)?;
     points.refuse_non_finite(Dimension::Two, &threads)?;
-    memory::check(BYTES_PER_POINT * count as u64 + BYTES_PER_CONSTRAINT * options.constraints.len() as u64)?;
+    let bytes = if options.skips_constraints { BYTES_PER_SKIPPED } else { BYTES_PER_CONSTRAINT };
+    memory::check(BYTES_PER_POINT * count as u64 + bytes * options.constraints.len() as u64)?;
     let triangulation = threads.enter(|| triangulated(points, options, &threads));
     match triangulation.left_out.first() {
         Some(LeftOut { reason, .. }) if !options.skips_constraints => {
@@ -164,6 +169,6 @@ fn brought_in(
     }
     let given: Vec<_> = constraints.iter().map(|ends| ends.map(|index| vertices[index as usize])).collect();
     let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(stars);
-    let edges = brought.edges.iter().map(|(_, ends)| ends.map(|vertex| indices[vertex as usize]));
+    let edges = brought.edges.iter().map(|&[_, a, b]| [a, b].map(|vertex| indices[vertex as usize]));
     (edges.collect(), brought.left_out(constraints))
 }
