@@ -11,13 +11,13 @@ import { PointPicture } from './point-picture.ts';
 import type { Started } from './starting.ts';
 
 /** How many points there are, and the radius of their disc. */
-const [COUNT, RADIUS] = [1000, 0.7];
+const [COUNT, RADIUS] = [600, 0.7];
 /** How far the points go in and out, as a share of their radius. */
 const SWAY = 0.08;
 
 /** The radians that a point at this distance from the middle turns in a second: less, the further out it is. */
-const speedAt = (radius: number) => 0.1 / (radius + 0.25);
-const swayOf = (i: number, time: number) => 1 + SWAY * Math.sin(0.9 * time + 1.7 * i);
+const speedAt = (radius: number) => 0.06 / (radius + 0.25);
+const swayOf = (i: number, time: number) => 1 + SWAY * Math.sin(0.6 * time + 1.7 * i);
 
 /** Starts them. `pixel` is the size of a pixel in the scene. */
 export async function startPoints(pixel: () => number, signal: AbortSignal): Promise<Started> {
@@ -52,7 +52,8 @@ export class MovingPoints implements MovingMesh {
   readonly #orbits = new Float64Array(2 * COUNT);
   readonly #begun = performance.now();
   #time = 0;
-  #held: number | undefined;
+  /** The point that the pointer holds. It stands still. */
+  held: number | undefined;
   #indices: Uint32Array = new Uint32Array();
   #hull: Uint32Array = new Uint32Array();
   /** The moment at which each edge appeared, by its ends. */
@@ -74,7 +75,7 @@ export class MovingPoints implements MovingMesh {
     for (let i = 0; i < COUNT; i++) {
       const radius = this.#orbits[2 * i]!;
       const [away, angle] = [radius * swayOf(i, time), this.#orbits[2 * i + 1]! + speedAt(radius) * time];
-      if (i !== this.#held) this.#positions.set([away * Math.cos(angle), away * Math.sin(angle)], 2 * i);
+      if (i !== this.held) this.#positions.set([away * Math.cos(angle), away * Math.sin(angle)], 2 * i);
     }
     this.#session.update(this.#positions);
     this.#frames++;
@@ -115,11 +116,6 @@ export class MovingPoints implements MovingMesh {
     return [index, this.#positions[2 * index]!, this.#positions[2 * index + 1]!];
   }
 
-  /** The point that the pointer holds stands still. */
-  set held(index: number | undefined) {
-    this.#held = index;
-  }
-
   /** Moves a point. It orbits on from there. */
   moveTo(index: number, x: number, y: number): void {
     this.#positions.set([x, y], 2 * index);
@@ -145,7 +141,7 @@ export class MovingPoints implements MovingMesh {
     });
     for (const key of edges.keys()) if (!this.#edges.has(key)) this.#appeared++;
     [this.#indices, this.#hull, this.#edges] = [indices, this.#session.hull(), edges];
-    this.surface.fill(this.#positions, indices, flashed, this.#hull, this.#held);
+    this.surface.fill(this.#positions, indices, flashed, this.#hull, this.held);
     this.surface.time = this.#now;
   }
 

@@ -2,15 +2,23 @@
 
 import type { Scene } from '../watch/scene.ts';
 import type { Grip } from './moving-mesh.ts';
-import type { MovingPoints } from './moving-points.ts';
 
 /** How far the pointer may be from a point that it takes, in pixels. */
 const REACH = 22;
 
+/** Points that can be held. */
+interface Points {
+  /** The point that is nearest to a place, and where it is. */
+  nearest(x: number, y: number): [index: number, x: number, y: number];
+  /** The one that the pointer holds stands still. */
+  held: number | undefined;
+  moveTo(index: number, x: number, y: number): void;
+}
+
 export class PointGrip implements Grip {
   readonly #view: HTMLElement;
   readonly #scene: Scene;
-  readonly #points: MovingPoints;
+  readonly #points: Points;
   readonly #changed: (isHeld: boolean) => void;
   readonly #listening = new AbortController();
   /** The pointer, the point that it holds, and the way from the one to the other. */
@@ -18,7 +26,7 @@ export class PointGrip implements Grip {
   isBehind = false;
 
   /** `changed` is called when the pointer takes hold of a point, and when it lets go. */
-  constructor(view: HTMLElement, scene: Scene, points: MovingPoints, changed: (isHeld: boolean) => void) {
+  constructor(view: HTMLElement, scene: Scene, points: Points, changed: (isHeld: boolean) => void) {
     [this.#view, this.#scene, this.#points, this.#changed] = [view, scene, points, changed];
     // Before the camera's own listeners.
     const options = { signal: this.#listening.signal, capture: true };

@@ -1,12 +1,12 @@
 /** The sources of meshes: samples, chosen files, and dropped files and folders. */
 
 import { proxy } from 'comlink';
-import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { FORMATS, POINT_FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { WorkerClient } from './worker-client.ts';
 import type { Drop } from '../shell/early-drop.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
-import type { FileExtras } from './file-extras.ts';
+import { FileExtras } from './file-extras.ts';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
 /** The β of most meshes. */
@@ -43,13 +43,17 @@ export interface Read {
   others: number;
 }
 
-/** Splits a file's name into the stem and the extension of its format. */
-const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+/** The extensions of files that can be opened. */
+export const OPENED = [...FORMATS, ...POINT_FORMATS];
 
-/** The name without its extension, and the extension; `.off` if the mesh is not from a file. */
+/** Splits a file's name into the stem and the extension of its format. */
+const EXTENSION = new RegExp(`^(.*)((?:${OPENED.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+
+/** The name without its extension, and the extension that the mesh is saved with. */
 export function splitName(name: string): [stem: string, extension: string] {
-  const [, stem = name, extension = '.off'] = EXTENSION.exec(name) ?? [];
-  return [stem, extension];
+  const [, stem = name, extension = ''] = EXTENSION.exec(name) ?? [];
+  const isSaved = FORMATS.some((known) => extension.toLowerCase().startsWith(known));
+  return [stem, isSaved ? extension : '.off'];
 }
 
 /** A mesh of the page: of a family, or a file that the page brings. */
@@ -100,7 +104,7 @@ export function dropped(event: Drop): Source | undefined {
     if (folders.length > 0 && !files.some(isMesh)) {
       const names = new Intl.ListFormat('en').format(folders);
       const are = folders.length === 1 ? 'is a folder' : 'are folders';
-      throw new Error(`${names} ${are} without a mesh file. Files that can be opened end in ${FORMATS.join(', ')}.`);
+      throw new Error(`${names} ${are} without a mesh file. Files that can be opened end in ${OPENED.join(', ')}.`);
     }
     return readFirst(files, client, report);
   };
@@ -133,6 +137,9 @@ async function readFirst(files: readonly Located[], client: WorkerClient, report
   const { mesh, kept } = await client.call((worker) => worker.read(main, beside, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;
+  // A file of points cannot be written again with triangles, but its colours can be drawn.
+  if ('isTriangulated' in mesh)
+    return { name: main.file.name, mesh, kept: undefined, extras: new FileExtras(mesh, kept), others };
   return { name: main.file.name, mesh, kept, others };
 }
 
