@@ -25,7 +25,7 @@ export async function triangulated(mesh: FileMesh, name: string): Promise<PointM
     `${counted(positions.length / dimension, 'point')} became triangles${by}`,
     ...(equal > 0
       ? [
-          `${number.format(equal)} of them ${equal === 1 ? 'equals another and is' : 'equal others and are'} in no triangle`,
+          `${number.format(equal)} of them ${equal === 1 ? 'has' : 'have'} the x and y of an earlier one, and no triangle`,
         ]
       : []),
     ...mesh.notes,
