@@ -2,9 +2,10 @@
 // and those of files become meshes. The triangles are those of `triangulate` in Node, bit for bit.
 
 import assert from 'node:assert/strict';
+import { join } from 'node:path';
 import { test } from 'node:test';
 import { PointSession, triangulate } from 'edgeflip/points';
-import { file, openEdgeflip, sharedPage } from './page.mjs';
+import { file, folder, openEdgeflip, sharedPage } from './page.mjs';
 import { startChromium } from '../browsers.mjs';
 
 /** The sample reaches so far from the middle, and the camera leaves some room around it. */
@@ -206,5 +207,21 @@ test('the points of a file become a mesh, with their heights and their colours',
   assert.match(seen.error, /^\s*line\.xyz: All points are on one line, so there is no triangle\./);
   assert.equal(seen.caption, 'coloured.ply');
   assert.match(await page.page.getAttribute('#file', 'accept'), /\.csv,\.xyz,/);
+  await page.close();
+});
+
+test('a folder opens with its points if it has no mesh', async () => {
+  const page = await sharedPage();
+  file('survey/a.csv', 'x;y\n0;0\n4;0\n0;3\n4;4\n');
+  const drop = async (caption) => {
+    await page.dropPaths([join(folder, 'survey')]);
+    await page.until(caption, (seen) => seen.caption === caption);
+    return page.rest();
+  };
+  const { facts } = await drop('a.csv');
+  assert.deepEqual([facts.Vertices, facts.Triangles], ['4', '2']);
+  file('survey/mesh.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
+  const { note } = await drop('mesh.obj');
+  assert.doesNotMatch(note, /not opened/);
   await page.close();
 });

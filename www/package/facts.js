@@ -7,9 +7,9 @@ import { addresses, notPublicIn, titleOf } from '../documents/site.js';
 
 const text = (path) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
 
-/** The blocks of code of a language, from a heading on. */
-function blocks(path, language, heading = '') {
-  const after = text(path).split(`\n${heading}\n`).slice(1).join('\n');
+/** The blocks of code of a language, from a heading on, or all. */
+function blocks(path, language, heading) {
+  const after = heading ? text(path).split(`\n${heading}\n`).slice(1).join('\n') : text(path);
   return Array.from(after.matchAll(new RegExp(`^\`\`\`${language}\n([^]*?)^\`\`\`$`, 'gm')), ([, code]) => code.trim());
 }
 

@@ -46,14 +46,16 @@ export interface Read {
 /** The extensions of files that can be opened. */
 export const OPENED = [...FORMATS, ...POINT_FORMATS];
 
+const named = (formats: readonly string[]) =>
+  new RegExp(`^(.*)((?:${formats.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
 /** Splits a file's name into the stem and the extension of its format. */
-const EXTENSION = new RegExp(`^(.*)((?:${OPENED.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+const EXTENSION = named(OPENED);
+const POINTS = named(POINT_FORMATS);
 
 /** The name without its extension, and the extension that the mesh is saved with. */
 export function splitName(name: string): [stem: string, extension: string] {
-  const [, stem = name, extension = ''] = EXTENSION.exec(name) ?? [];
-  const isSaved = FORMATS.some((known) => extension.toLowerCase().startsWith(known));
-  return [stem, isSaved ? extension : '.off'];
+  const [, stem = name, extension = '.off'] = EXTENSION.exec(name) ?? [];
+  return [stem, POINTS.test(name) ? '.off' : extension];
 }
 
 /** A mesh of the page: of a family, or a file that the page brings. */
@@ -127,7 +129,10 @@ async function gather(event: Drop, folders: readonly string[]): Promise<Located[
 }
 
 async function readFirst(files: readonly Located[], client: WorkerClient, report: Report): Promise<Read> {
-  const meshes = files.filter(isMesh);
+  const known = files.filter(isMesh);
+  // In a folder with a mesh, a table may be anything.
+  const triangles = known.filter(({ file: { name } }) => !POINTS.test(name));
+  const meshes = triangles.length > 0 ? triangles : known;
   const main = meshes[0] ?? files[0];
   if (!main) throw new Error('No file was given.');
   const folder = folderOf(main.path);
@@ -143,7 +148,7 @@ async function readFirst(files: readonly Located[], client: WorkerClient, report
   return { name: main.file.name, mesh, kept, others };
 }
 
-/** Whether it is a mesh file. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
+/** Whether it is a file of a mesh or of points. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
 function isMesh({ file: { name } }: Located): boolean {
   return EXTENSION.test(name) && !name.startsWith('.');
 }
