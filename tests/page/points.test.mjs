@@ -173,7 +173,7 @@ test('the points of a file become a mesh, with their heights and their colours',
   assert.deepEqual([opened.caption, opened.facts.Vertices], ['hills.csv', '42']);
   assert.match(
     opened.note,
-    /42 points became triangles by x and y\. 2 of them have the x and y of an earlier one, and no triangle\./,
+    /Triangulated from 42 points by x and y\. 2 points are left out, because others have the same x and y\./,
   );
   const mesh = await page.download();
   assert.deepEqual([mesh.name, mesh.dimension], ['hills-after-0.off', 3]);
@@ -182,7 +182,7 @@ test('the points of a file become a mesh, with their heights and their colours',
   // In the plane there is nothing left to flip.
   const flat = rows.map(([x, y]) => `v ${x} ${y} 0`).join('\n');
   const { note, status, error } = await page.open(file('flat.obj', flat));
-  assert.match(note, /^Every edge is Delaunay\. 40 points became triangles\. /);
+  assert.match(note, /^Every edge is Delaunay\. Triangulated from 40 points\. /);
   assert.equal(error, '');
   assert.match(status, /^Already Delaunay\./);
   assert.deepEqual((await page.download()).indices, (await triangulate(rows.map(([x, y]) => [x, y]))).triangles);
@@ -198,7 +198,7 @@ test('the points of a file become a mesh, with their heights and their colours',
   const lines = rows.map((row, i) => `${row.join(' ')} ${6 * i} 90 ${250 - 6 * i}`);
   await page.open(file('coloured.ply', [...header, ...channels, 'end_header', ...lines, ''].join('\n')));
   await page.page.locator('#surface-label').waitFor();
-  assert.match((await page.look()).note, /Not kept: [^.]*\. 40 points became triangles by x and y\./);
+  assert.match((await page.look()).note, /Not kept: [^.]*\. Triangulated from 40 points by x and y\./);
   assert.equal((await page.download()).name, 'coloured-after-0.ply');
 
   // Points on a line have no triangle, and the mesh before stays.

@@ -1,12 +1,19 @@
 /** The points of a file without triangles become a mesh. */
 
 import type { FileMesh } from 'edgeflip/files';
-import { triangulate } from 'edgeflip/points';
-import { counted, number } from '../shell/numbers.ts';
+import { counted } from '../shell/numbers.ts';
+import { GLTF } from './files.ts';
+import type { PointsWorker } from './points-worker.ts';
+import { WorkerClient } from './worker-client.ts';
 
 /** A mesh whose triangles are not in its file, but made of its points. */
 export interface PointMesh extends FileMesh {
   isTriangulated: true;
+}
+
+/** Whether a file has points, and no triangles. In glTF, nodes may place points apart from each other. */
+export function hasPointsOnly({ positions, indices }: FileMesh, name: string): boolean {
+  return indices.length === 0 && positions.length > 0 && !GLTF.test(name);
 }
 
 /**
@@ -17,17 +24,17 @@ export interface PointMesh extends FileMesh {
  */
 export async function triangulated(mesh: FileMesh, name: string): Promise<PointMesh> {
   const { positions, dimension } = mesh;
-  const { triangles, duplicates, hint } = await triangulate(positions, { stride: dimension });
+  const worker = new Worker(new URL('./points-worker.ts', import.meta.url), { type: 'module' });
+  const client = new WorkerClient<PointsWorker>(worker);
+  const { triangles, equal, hint } = await client
+    .call(({ triangulate }) => triangulate(positions, dimension))
+    .finally(() => client.close());
   if (triangles.length === 0) throw new Error(`${name}: ${hint}`);
-  const equal = duplicates.length / 2;
   const by = dimension === 3 ? ' by x and y' : '';
+  const are = equal === 1 ? 'is left out, because another has' : 'are left out, because others have';
   const notes = [
-    `${counted(positions.length / dimension, 'point')} became triangles${by}`,
-    ...(equal > 0
-      ? [
-          `${number.format(equal)} of them ${equal === 1 ? 'has' : 'have'} the x and y of an earlier one, and no triangle`,
-        ]
-      : []),
+    `Triangulated from ${counted(positions.length / dimension, 'point')}${by}`,
+    ...(equal > 0 ? [`${counted(equal, 'point')} ${are} the same x and y`] : []),
     ...mesh.notes,
   ];
   return { ...mesh, indices: triangles, notes, keeps: false, isTriangulated: true };

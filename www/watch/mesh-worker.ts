@@ -23,7 +23,7 @@ import { scrambled } from '../models/scramble.js';
 import { featuresOf } from './features.ts';
 import { errorOf } from './kinds.ts';
 import { countLocks } from './locks.ts';
-import { contentOfKept, GLTF, keep, type Kept, readWith, type Located, type Report } from './files.ts';
+import { contentOfKept, keep, type Kept, readWith, type Located, type Report } from './files.ts';
 import type { Seams } from './seam.ts';
 import { countStates, sessionOf, statesOf, summaryOf, type OpenMesh, type Step, type Summary } from './run.ts';
 
@@ -71,10 +71,7 @@ class MeshWorker {
         throw await errorOf(error, name, bytes);
       }),
     );
-    const { result, content } = await naming(reading);
-    const mesh = hasPointsOnly(result, name)
-      ? await naming((await import('./file-points.ts')).triangulated(result, name))
-      : result;
+    const { result: mesh, content } = await naming(reading);
     if (beside.length > 0) await (await import('./pictures.ts')).addPictures(content, main, beside);
     return transfer({ mesh, kept: keep(name, content) }, buffersOf(mesh));
   }
@@ -234,11 +231,6 @@ class MeshWorker {
     if (!this.#session) throw new Error('no run has begun');
     return this.#session;
   }
-}
-
-/** Whether a file has points, and no triangles. In glTF, nodes may place points apart from each other. */
-function hasPointsOnly({ positions, indices }: FileMesh, name: string): boolean {
-  return indices.length === 0 && positions.length > 0 && !GLTF.test(name);
 }
 
 function buffersOf(mesh: IndexedMesh & { placed?: Float32Array | undefined }): Transferable[] {

@@ -7,6 +7,7 @@ import type { WorkerClient } from './worker-client.ts';
 import type { Drop } from '../shell/early-drop.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
 import { FileExtras } from './file-extras.ts';
+import { hasPointsOnly, triangulated } from './file-points.ts';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
 /** The β of most meshes. */
@@ -142,10 +143,11 @@ async function readFirst(files: readonly Located[], client: WorkerClient, report
   const { mesh, kept } = await client.call((worker) => worker.read(main, beside, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;
-  // A file of points cannot be written again with triangles, but its colours can be drawn.
-  if ('isTriangulated' in mesh)
-    return { name: main.file.name, mesh, kept: undefined, extras: new FileExtras(mesh, kept), others };
-  return { name: main.file.name, mesh, kept, others };
+  const { name } = main.file;
+  if (!hasPointsOnly(mesh, name)) return { name, mesh, kept, others };
+  // The file cannot be written again with triangles, but its colours can be drawn.
+  const made = await triangulated(mesh, name);
+  return { name, mesh: made, kept: undefined, extras: new FileExtras(made, kept), others };
 }
 
 /** Whether it is a file of a mesh or of points. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
