@@ -31,10 +31,10 @@ export async function triangulated(mesh: FileMesh, name: string): Promise<PointM
     .finally(() => client.close());
   if (triangles.length === 0) throw new Error(`${name}: ${hint}`);
   const by = dimension === 3 ? ' by x and y' : '';
-  const are = equal === 1 ? 'is left out, because another has' : 'are left out, because others have';
+  const repeats = equal === 1 ? 'repeats the x and y of another' : 'repeat the x and y of others';
   const notes = [
     `Triangulated from ${counted(positions.length / dimension, 'point')}${by}`,
-    ...(equal > 0 ? [`${counted(equal, 'point')} ${are} the same x and y`] : []),
+    ...(equal > 0 ? [`${counted(equal, 'point')} ${repeats}`] : []),
     ...mesh.notes,
   ];
   return { ...mesh, indices: triangles, notes, keeps: false, isTriangulated: true };
