@@ -102,6 +102,12 @@ test('the code that is copied runs beside the visitor’s files, and after a scr
   const rigged = await page.playToEnd();
   assert.equal((await runCopied(page, ...parts)).fingerprint, rigged.facts.Fingerprint);
 
+  const rows = Array.from({ length: 60 }, (_, i) => [(i * 7) % 23, (i * i) % 31, (i * 5) % 7].join());
+  const points = file('points.csv', rows.join('\n'));
+  await page.open(points);
+  const ofPoints = await page.playToEnd();
+  assert.equal((await runCopied(page, points)).fingerprint, ofPoints.facts.Fingerprint);
+
   await page.choose('sample', 'regular 16');
   const before = await page.until(
     'the lattice',

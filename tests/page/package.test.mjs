@@ -35,6 +35,7 @@ test('the code of each tab is the code that other tests run', async () => {
       ['docs/peers.html', 'With three.js and glTF-Transform'],
       ['README.html', 'Overview'],
       ['examples/gltf.mjs.html', 'examples/gltf.mjs'],
+      ['docs/points.html', 'Points'],
       ['README.html', 'Overview'],
       ['examples/one_call.rs.html', 'examples/one_call.rs'],
     ],
@@ -58,7 +59,7 @@ test('the tabs work by keyboard, and the tool does not step meanwhile', async ()
   const { page } = edgeflip;
   const tabs = page.getByRole('tab');
   const names = await tabs.allTextContents();
-  assert.equal(names.length, 5);
+  assert.equal(names.length, 6);
   const now = () =>
     page.evaluate(() => ({
       focus: document.activeElement.textContent,
@@ -74,9 +75,9 @@ test('the tabs work by keyboard, and the tool does not step meanwhile', async ()
     ['ArrowRight', 1],
     ['ArrowRight', 2],
     ['ArrowLeft', 1],
-    ['End', 4],
+    ['End', 5],
     ['ArrowRight', 0],
-    ['ArrowLeft', 4],
+    ['ArrowLeft', 5],
     ['Home', 0],
   ]) {
     await page.keyboard.press(key);
@@ -113,12 +114,13 @@ test('the sizes are measured, and the browsers are those of docs/package.md', as
       ['+ for glTF-Transform', `${gltf} KB`],
       ['+ to untangle points that move', `${untangle} KB`],
       ['+ to read and write files', `${files} KB`],
+      ['edgeflip/points, by itself', `${points} KB`],
     ],
   );
   const loads = await page.locator('.package-row').allTextContents();
   assert.deepEqual(
     loads.map((words) => Number(words.match(/loads (\d+) KB/)?.[1])),
-    [core + three, core, core + gltf, Number.NaN, Number.NaN],
+    [core + three, core, core + gltf, points, Number.NaN, Number.NaN],
   );
   // The document has the same sizes.
   const table = text('docs/package.md').split('\n## Sizes\n')[1];

@@ -11,7 +11,8 @@ import initManifold from 'manifold-3d';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createNoise2D } from 'simplex-noise';
 import { generate, readMesh, writeMesh } from '../../dist/files.js';
-import { MOVING, SAMPLES } from './samples.js';
+import { triangulate } from '../../dist/points.js';
+import { MOVING, SAMPLES, sunflower } from './samples.js';
 import { scrambled } from './scramble.js';
 import { wireframe } from './wireframe.js';
 
@@ -120,8 +121,15 @@ export async function writeModels(folder) {
     writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
   }
   for (const { thumb, drawn, warp } of MOVING) {
-    writeFileSync(join(folder, thumb), wireframe(warped(await generate(drawn), warp)));
+    const mesh = drawn ? warped(await generate(drawn), warp) : await seeds();
+    writeFileSync(join(folder, thumb), wireframe(mesh));
   }
+}
+
+/** The points that move freely, fewer of them. */
+async function seeds() {
+  const positions = sunflower(70);
+  return { positions, indices: (await triangulate(positions)).triangles, dimension: 2 };
 }
 
 function warped({ positions, indices, dimension }, warp) {

@@ -108,9 +108,10 @@ export const SAMPLES = [
 ];
 
 /**
- * Meshes that move; `kind` is the motion. The thumbnail is of the family `drawn`, with each vertex moved by `warp`.
- * @typedef {{ kind: 'sheet' | 'waves' | 'relax', spec: string, name: string, short: string, thumb: string,
- *   drawn: string, warp: (vertex: number[]) => number[] }} MovingSample
+ * Meshes that move, and points; `kind` is the motion. The thumbnail is of the family `drawn`, with each vertex moved by `warp`,
+ * or of points.
+ * @typedef {{ kind: 'sheet' | 'waves' | 'relax' | 'points', spec: string, name: string, short: string, thumb: string,
+ *   drawn?: string, warp?: (vertex: number[]) => number[] }} MovingSample
  */
 
 /** @type {readonly MovingSample[]} */
@@ -149,7 +150,26 @@ export const MOVING = [
     drawn: 'random 10',
     warp: (vertex) => vertex.map((at) => (2 * at - 1) * (0.25 + 0.75 * Math.abs(2 * at - 1))),
   },
+  {
+    kind: 'points',
+    spec: 'moving points',
+    name: 'Points that move freely',
+    short: 'Free points',
+    thumb: thumb('free'),
+  },
 ];
+
+/**
+ * Points in a disc of radius 1, as the seeds of a sunflower are, but closer together in the middle: x and y of each.
+ * @param {number} count
+ */
+export function sunflower(count) {
+  const golden = Math.PI * (3 - Math.sqrt(5));
+  return Float32Array.from({ length: 2 * count }, (_, k) => {
+    const i = k >> 1;
+    return ((i + 0.5) / count) ** 0.55 * Math[k % 2 === 0 ? 'cos' : 'sin'](golden * i);
+  });
+}
 
 /** The sample that is shown when the page opens. */
 export const FIRST = 'models/bunny.ply';

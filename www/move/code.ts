@@ -1,4 +1,4 @@
-/** The lines of JavaScript that keep a mesh Delaunay while it moves. */
+/** The lines of JavaScript that keep a mesh, or points, Delaunay while they move. */
 
 import type { Motion } from './motions.ts';
 
@@ -21,3 +21,22 @@ export function codeFor(motion: Motion, triangles: number): string {
     '',
   ].join('\n');
 }
+
+export const CODE_FOR_POINTS = `import { PointSession } from 'edgeflip/points';
+
+const points = new Float32Array(2000);
+const place = (time) => {
+  for (let i = 0; i < 1000; i++) {
+    const [radius, angle] = [Math.sqrt(i) * (1 + 0.1 * Math.sin(i + time)), 2.4 * i + time / (1 + Math.sqrt(i))];
+    points.set([radius * Math.cos(angle), radius * Math.sin(angle)], 2 * i);
+  }
+};
+place(0);
+const session = await PointSession.create(points);
+for (let frame = 1; frame <= 60; frame++) {
+  place(frame / 10);
+  session.update(points);
+}
+session.moveTo(0, 50, 0); // across the hull
+const triangles = session.triangles();
+`;

@@ -1,9 +1,8 @@
 /** Plays a mesh that moves: in each frame its vertices move, edges flip, and it is drawn. */
 
 import type { Scene } from '../watch/scene.ts';
-import { PointerDrag } from './pointer-drag.ts';
 import type { Motion, Point } from './motions.ts';
-import type { MovingMesh } from './moving-mesh.ts';
+import type { Grip, MovingMesh } from './moving-mesh.ts';
 
 /** The longest step of the motion, in seconds: after a pause the mesh does not jump. */
 const LONGEST = 1 / 30;
@@ -29,7 +28,7 @@ export interface Numbers {
 export class FrameLoop {
   readonly moving: MovingMesh;
   readonly #scene: Scene;
-  readonly #pointer: PointerDrag;
+  readonly #pointer: Grip;
   readonly #told: (numbers: Numbers) => void;
   readonly #failed: (error: unknown) => void;
   #time = 0;
@@ -41,12 +40,15 @@ export class FrameLoop {
   #starts = 0;
   #isPlaying = false;
 
-  /** `told` is called with new numbers, and `failed` with the error that ends the motion. */
+  /**
+   * `grip` makes the pointer, which calls `changed` when it takes hold of the mesh and when it lets go. `told` is called
+   * with new numbers, and `failed` with the error that ends the motion.
+   */
   constructor(
     moving: MovingMesh,
-    { dimension, box }: Motion,
+    { dimension, box }: Pick<Motion, 'dimension' | 'box'>,
     scene: Scene,
-    view: HTMLElement,
+    grip: (changed: (isHeld: boolean) => void) => Grip,
     told: (numbers: Numbers) => void,
     failed: (error: unknown) => void,
   ) {
@@ -54,7 +56,7 @@ export class FrameLoop {
     this.#scene = scene;
     this.#told = told;
     this.#failed = failed;
-    this.#pointer = new PointerDrag(view, scene, dimension, (isHeld) => void (this.#isPlaying || this.#drag(isHeld)));
+    this.#pointer = grip((isHeld) => void (this.#isPlaying || this.#drag(isHeld)));
     scene.showMoving(moving.surface.object, endsOf(box), dimension);
   }
 

@@ -1,4 +1,4 @@
-/** What the page says of a mesh that moves: its numbers, and a bar for the flips of each of the last frames. */
+/** What the page says of a mesh that moves, or of points: numbers, and a bar for the flips of each of the last frames. */
 
 import { controls, element } from '../watch/controls.ts';
 import { facts } from '../watch/panel.ts';
@@ -11,11 +11,39 @@ const [MOST, PITCH] = [240, 5];
 /** Milliseconds from one change of the words to the next. */
 const CALM = 250;
 
+/** What is said of what moves. */
+export interface Words {
+  /** How large it is, and what can be dragged. */
+  size: string;
+  drag: string;
+  engine: string;
+  /** What its bars count. */
+  unit: 'flips' | 'new edges';
+  /** Its size in numbers, and what else is counted in a frame. */
+  facts(numbers: Numbers): Record<string, string>;
+}
+
+/** The words for a mesh. */
+export function wordsForMesh(triangles: number, vertices: number, engine: string): Words {
+  return {
+    size: counted(triangles, 'triangle'),
+    drag: 'Drag a point of the mesh.',
+    engine,
+    unit: 'flips',
+    facts: ({ left, kept, inverted, flat }) => ({
+      Triangles: number.format(triangles),
+      Vertices: number.format(vertices),
+      'Left for the next frame': number.format(left),
+      'Not Delaunay, and cannot flip': number.format(kept),
+      'Turned over': number.format(inverted),
+      'No area': number.format(flat),
+    }),
+  };
+}
+
 export class MotionPanel {
   readonly #name: string;
-  #triangles = 0;
-  #vertices = 0;
-  #engine = '';
+  #words: Words | undefined;
   readonly #flips: number[] = [];
   #said = -Infinity;
 
@@ -30,12 +58,13 @@ export class MotionPanel {
   }
 
   /** The mesh is ready. */
-  begin(triangles: number, vertices: number, engine: string, remark: string): void {
-    [this.#triangles, this.#vertices, this.#engine] = [triangles, vertices, engine];
-    element('about').textContent = `${counted(triangles, 'triangle')}. Drag a point of the mesh.`;
+  begin(words: Words, remark: string): void {
+    this.#words = words;
+    element('about').textContent = `${words.size}. ${words.drag}`;
+    element('moving').ariaLabel = `${words.unit === 'flips' ? 'Flips' : 'New edges'} in each of the last frames`;
     element('note').textContent = remark;
     element('note').hidden = remark === '';
-    element('announcement').textContent = `${this.#name}, ${counted(triangles, 'triangle')}. ${remark}`;
+    element('announcement').textContent = `${this.#name}, ${words.size}. ${remark}`;
   }
 
   /** Shows whether the mesh moves, and whether it can. */
@@ -47,7 +76,9 @@ export class MotionPanel {
   }
 
   show(numbers: Numbers, isPlaying: boolean): void {
-    const { flips, left, kept, inverted, flat, each, work } = numbers;
+    const { flips, left, kept, each, work } = numbers;
+    const words = this.#words;
+    if (!words) return;
     if (isPlaying) this.#flips.push(flips);
     if (this.#flips.length > MOST) this.#flips.shift();
     this.#draw();
@@ -55,20 +86,15 @@ export class MotionPanel {
     if (isPlaying && now - this.#said < CALM) return;
     this.#said = now;
     const rate = each > 0 ? `${number.format(Math.round(1000 / each))} frames a second` : '';
-    const words = isPlaying ? rate : left === 0 && kept === 0 ? 'Every edge is Delaunay.' : 'Paused.';
-    const bold = `${number.format(Math.round(this.#mean))} flips a frame`;
-    element('status').replaceChildren(made('b', '', isPlaying ? `${bold},` : words), ' ', isPlaying ? words : bold);
+    const state = isPlaying ? rate : left === 0 && kept === 0 ? 'Every edge is Delaunay.' : 'Paused.';
+    const mean = `${number.format(Math.round(this.#mean))} ${words.unit} a frame`;
+    element('status').replaceChildren(made('b', '', isPlaying ? `${mean},` : state), ' ', isPlaying ? state : mean);
     facts('facts', {
-      Triangles: number.format(this.#triangles),
-      Vertices: number.format(this.#vertices),
-      Engine: this.#engine,
+      ...words.facts(numbers),
+      Engine: words.engine,
       'From frame to frame': each > 0 ? `${ms.format(each)} ms` : '…',
       'Work of a frame': work > 0 ? `${ms.format(work)} ms` : '…',
-      'Flips a frame': number.format(Math.round(this.#mean)),
-      'Left for the next frame': number.format(left),
-      'Not Delaunay, and cannot flip': number.format(kept),
-      'Turned over': number.format(inverted),
-      'No area': number.format(flat),
+      [words.unit === 'flips' ? 'Flips a frame' : 'New edges a frame']: number.format(Math.round(this.#mean)),
     });
   }
 

@@ -8,14 +8,15 @@ import { showError } from '../watch/jobs.ts';
 import type { Page } from '../watch/page.ts';
 import { palette } from '../watch/palette.ts';
 import type { Backend } from '../watch/run.ts';
+import type { Scene } from '../watch/scene.ts';
 import type { MovingSample } from '../models/samples.js';
 import { stillness } from '../shell/stillness.ts';
 import { onTheme } from '../shell/theme.ts';
 import { MotionPanel } from './motion-panel.ts';
-import { codeFor } from './code.ts';
+import { codeFor, CODE_FOR_POINTS } from './code.ts';
 import { MOTIONS } from './motions.ts';
 import { FrameLoop } from './frame-loop.ts';
-import { startMovingMesh } from './starting.ts';
+import { startMovingMesh, type Started } from './starting.ts';
 
 const many = element<HTMLSelectElement>('many');
 
@@ -100,31 +101,26 @@ export class MovingSamples {
 
   /** Copies the lines of JavaScript that keep such a mesh Delaunay. Returns what to say. */
   async code(): Promise<string> {
-    if (this.#sample) await navigator.clipboard.writeText(codeFor(MOTIONS[this.#sample.kind], Number(many.value)));
+    const kind = this.#sample?.kind;
+    if (kind) {
+      const code = kind === 'points' ? CODE_FOR_POINTS : codeFor(MOTIONS[kind], Number(many.value));
+      await navigator.clipboard.writeText(code);
+    }
     return 'Code copied.';
   }
 
   async #begin(sample: MovingSample, panel: MotionPanel, signal: AbortSignal): Promise<void> {
-    const motion = MOTIONS[sample.kind];
     await this.#page.ready;
-    const { scene, gpu } = this.#page;
+    const { scene } = this.#page;
     if (!scene) throw new Error('This browser cannot draw the mesh: it has no WebGPU and no WebGL2.');
-    const backend = controls.backend.value as Backend;
-    const { moving, triangles, vertices, remark } = await startMovingMesh(
-      motion,
-      Number(many.value),
-      backend,
-      gpu,
-      (attribute, buffer, count) => scene.share(attribute, buffer, count),
-      signal,
-    );
+    const { moving, words, remark, view, grip } = await this.#start(sample, scene, signal);
     moving.surface.setPalette(palette());
-    panel.begin(triangles, vertices, moving.engine, remark);
+    panel.begin(words, remark);
     const loop: FrameLoop = new FrameLoop(
       moving,
-      motion,
+      view,
       scene,
-      element('view'),
+      (changed) => grip(element('view'), scene, changed),
       (numbers) => loop === this.#loop && panel.show(numbers, loop.isPlaying),
       (error) => loop === this.#loop && this.#fail(error),
     );
@@ -133,6 +129,21 @@ export class MovingSamples {
     await loop.still();
     panel.state = stillness.matches ? 'paused' : 'moving';
     if (!stillness.matches) loop.play();
+  }
+
+  async #start({ kind }: MovingSample, scene: Scene, signal: AbortSignal): Promise<Started> {
+    if (kind === 'points') {
+      const { startPoints } = await import('./moving-points.ts');
+      return startPoints(() => scene.camera.pixel, signal);
+    }
+    return startMovingMesh(
+      MOTIONS[kind],
+      Number(many.value),
+      controls.backend.value as Backend,
+      this.#page.gpu,
+      (attribute, buffer, count) => scene.share(attribute, buffer, count),
+      signal,
+    );
   }
 
   #fail(error: unknown): void {

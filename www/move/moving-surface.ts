@@ -31,11 +31,12 @@ import {
 import type { Sharing } from '../watch/corners.ts';
 import { light } from '../watch/light.ts';
 import type { Palette } from '../watch/palette.ts';
+import type { MovingPicture } from './moving-mesh.ts';
 
 /** Seconds in which the heat of an edge falls to a third. */
 const COOLING = 0.38;
 
-export class MovingSurface {
+export class MovingSurface implements MovingPicture {
   readonly object: Mesh<BufferGeometry, MeshBasicNodeMaterial>;
   readonly #time = uniform(0);
   readonly #dimension: 2 | 3;
@@ -83,11 +84,11 @@ export class MovingSurface {
     return new MovingSurface(geometry, sides, dimension, position);
   }
 
-  /** From arrays, see {@link fill}. */
-  static onArrays({ indices, dimension }: IndexedMesh): MovingSurface {
+  /** From arrays with at most so many corners of triangles, see {@link fill}. */
+  static onArrays(corners: number, dimension: 2 | 3): MovingSurface {
     const geometry = new BufferGeometry();
     for (const name of ['position', 'flashed']) {
-      const array = new BufferAttribute(new Float32Array(3 * indices.length), 3);
+      const array = new BufferAttribute(new Float32Array(3 * corners), 3);
       geometry.setAttribute(name, array.setUsage(DynamicDrawUsage));
     }
     return new MovingSurface(geometry, attribute<'vec3'>('flashed', 'vec3'), dimension);
@@ -105,6 +106,7 @@ export class MovingSurface {
       }
     }
     at.needsUpdate = moments.needsUpdate = true;
+    this.object.geometry.setDrawRange(0, indices.length);
   }
 
   /** The seconds of the frame that is drawn. */

@@ -29,7 +29,7 @@ export async function moveInArrays(mesh: IndexedMesh, motion: Motion, backend: B
   try {
     await session.run();
     let indices = await session.triangles();
-    const surface = MovingSurface.onArrays(mesh);
+    const surface = MovingSurface.onArrays(indices.length, dimension);
     const flashed = new Float32Array(indices.length).fill(LONG_AGO);
     const move = motion.pose
       ? poser(positions, motion.pose, dimension)

@@ -3,13 +3,14 @@
 import { Ray, Vector3 } from 'three/webgpu';
 import type { Scene } from '../watch/scene.ts';
 import { HALF, type Drag, type Point } from './motions.ts';
+import type { Grip } from './moving-mesh.ts';
 
 /** The longest way in a frame: a longer one would turn many triangles over. */
 const LONGEST = 0.06;
 /** The mesh is in a square with this half side, or in a ball with this radius. */
 const REACH = 1.15 * HALF;
 
-export class PointerDrag {
+export class PointerDrag implements Grip {
   readonly #view: HTMLElement;
   readonly #scene: Scene;
   readonly #dimension: 2 | 3;
@@ -42,12 +43,11 @@ export class PointerDrag {
     return this.#pointer !== undefined;
   }
 
-  /** Whether the mesh is not yet where the pointer has dragged it. */
   get isBehind(): boolean {
     return this.#last !== this.#now;
   }
 
-  /** What the pointer has done since the last call. What is too much for a frame is left for the next one. */
+  /** What is too much for a frame is left for the next one. */
   take(): Drag | undefined {
     const [last, now] = [this.#last, this.#now];
     if (!last || !now || last === now) return undefined;

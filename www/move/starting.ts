@@ -3,14 +3,29 @@
 import type { IndexedMesh } from 'edgeflip/files';
 import { forAuto, type Gpu } from '../watch/engines.ts';
 import type { Backend } from '../watch/run.ts';
+import type { Scene } from '../watch/scene.ts';
 import { WorkerClient } from '../watch/worker-client.ts';
+import { wordsForMesh, type Words } from './motion-panel.ts';
 import type { Motion, Point } from './motions.ts';
-import type { MovingMesh } from './moving-mesh.ts';
+import type { Grip, MovingMesh } from './moving-mesh.ts';
 import { moveInArrays } from './on-arrays.ts';
 import { moveOnDevice } from './on-device.ts';
+import { PointerDrag } from './pointer-drag.ts';
 import type { Sharing } from '../watch/corners.ts';
 
-/** Starts a mesh with about so many triangles. `remark` says why the GPU is not used. */
+/** What moves, once it has begun. */
+export interface Started {
+  moving: MovingMesh;
+  words: Words;
+  /** Why the GPU is not used. */
+  remark: string;
+  /** What the camera sees. */
+  view: Pick<Motion, 'dimension' | 'box'>;
+  /** Makes the pointer that drags it, see `FrameLoop`. */
+  grip(view: HTMLElement, scene: Scene, changed: (isHeld: boolean) => void): Grip;
+}
+
+/** Starts a mesh with about so many triangles. */
 export async function startMovingMesh(
   motion: Motion,
   many: number,
@@ -18,7 +33,7 @@ export async function startMovingMesh(
   gpu: Gpu | string | undefined,
   share: Sharing,
   signal: AbortSignal,
-): Promise<{ moving: MovingMesh; triangles: number; vertices: number; remark: string }> {
+): Promise<Started> {
   const [engine, remark] = engineFor(backend, gpu);
   const mesh = begun(await generated(motion.spec(many), signal), motion);
   signal.throwIfAborted();
@@ -30,7 +45,14 @@ export async function startMovingMesh(
     moving.free();
     throw signal.reason;
   }
-  return { moving, triangles: mesh.indices.length / 3, vertices: mesh.positions.length / mesh.dimension, remark };
+  const [triangles, vertices] = [mesh.indices.length / 3, mesh.positions.length / mesh.dimension];
+  return {
+    moving,
+    words: wordsForMesh(triangles, vertices, moving.engine),
+    remark,
+    view: motion,
+    grip: (view, scene, changed) => new PointerDrag(view, scene, motion.dimension, changed),
+  };
 }
 
 /** A mesh of a family, made in a worker. */

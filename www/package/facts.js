@@ -7,9 +7,9 @@ import { addresses, notPublicIn, titleOf } from '../documents/site.js';
 
 const text = (path) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
 
-/** The blocks of code of a language, from a heading on. */
-function blocks(path, language, heading = '') {
-  const after = text(path).split(`\n${heading}\n`).slice(1).join('\n');
+/** The blocks of code of a language, from a heading on, or all. */
+function blocks(path, language, heading) {
+  const after = heading ? text(path).split(`\n${heading}\n`).slice(1).join('\n') : text(path);
   return Array.from(after.matchAll(new RegExp(`^\`\`\`${language}\n([^]*?)^\`\`\`$`, 'gm')), ([, code]) => code.trim());
 }
 
@@ -33,6 +33,7 @@ function snippets(sizes) {
   const [install, command] = blocks('README.md', 'sh', use);
   const [dependency] = blocks('README.md', 'toml', use);
   const [plain] = blocks('README.md', 'js', use);
+  const [points] = blocks('docs/points.md', 'js');
   const [three] = blocks('docs/peers.md', 'js', '## three.js');
   const html = (path) => path.replace(/\.md$/, '.html');
   return [
@@ -44,6 +45,13 @@ function snippets(sizes) {
       install,
       code: text('examples/gltf.mjs').trim(),
       loads: sum(withEntry('edgeflip/gltf-transform')),
+    },
+    {
+      name: 'Points',
+      source: 'docs/points.md',
+      install,
+      code: points,
+      loads: sum(['edgeflip/points', 'edgeflip_points_bg.wasm']),
     },
     { name: 'Command line', source: 'README.md', code: command },
     {

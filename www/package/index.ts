@@ -36,6 +36,7 @@ const SIZES = [
   ['+ to untangle points that move', kilobytes('edgeflip_untangle_bg.wasm')],
   ['+ WebGL2', kilobytes('scripts of WebGL2', 'edgeflip_webgl2_bg.wasm')],
   ['+ to read and write files', kilobytes('edgeflip/files', FILES)],
+  ['edgeflip/points, by itself', kilobytes('edgeflip/points', 'edgeflip_points_bg.wasm')],
 ] as const;
 
 const JOINING = `three.js and glTF-Transform take the part for files too (${kilobytes(FILES)}), because they join vertices at the same position. With “weld: false”, they do not.`;

@@ -27,11 +27,19 @@ export function codeFor({ opened, run, settings }: Shown): string {
         : []),
     ...(has('lockedTriangles') ? ['lockedTriangles: mesh.lockedTriangles'] : []),
   ];
+  const arePoints = !opened.isScrambled && 'isTriangulated' in mesh;
   return [
     `import { ${locksFeatures ? 'FlipSession, ' : ''}makeDelaunay } from 'edgeflip';`,
     `import { ${isGenerated ? 'generate' : 'readMesh'} } from 'edgeflip/files';`,
+    ...(arePoints ? [`import { triangulate } from 'edgeflip/points';`] : []),
     '',
     ...(isGenerated ? [`const mesh = await generate(${quoted(origin)});`] : linesOfReading(opened)),
+    ...(arePoints
+      ? [
+          'const { triangles } = await triangulate(mesh.positions, { stride: mesh.dimension });',
+          'mesh.indices = triangles;',
+        ]
+      : []),
     ...(locksFeatures ? linesOfFeatures(features) : []),
     `const { indices } = await makeDelaunay(mesh${options.length > 0 ? `, { ${options.join(', ')} }` : ''});`,
     '',

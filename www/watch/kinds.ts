@@ -1,6 +1,6 @@
 /** What a file seems to be by its first bytes, for the message about a file whose name says something else. */
 
-import { EdgeflipError, FORMATS } from 'edgeflip/files';
+import { EdgeflipError, FORMATS, POINT_FORMATS } from 'edgeflip/files';
 
 /** So many bytes are looked at. */
 const HEAD = 4096;
@@ -71,6 +71,6 @@ export async function errorOf(error: unknown, name: string, bytes: Uint8Array<Ar
   const better = extensions && name.replace(/(?:\.[^.]*)?(\.gz)?$/i, `${extensions[0]}$1`);
   const todo = better
     ? `Rename it to ${better}, and open it again.`
-    : `Open a file that ends in ${FORMATS.join(', ')}.`;
+    : `Open a file that ends in ${[...FORMATS, ...POINT_FORMATS].join(', ')}.`;
   return new EdgeflipError('parse', `${name} seems to be ${what}${better ? '' : ', and no mesh'}. ${todo}`);
 }

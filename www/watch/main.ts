@@ -8,7 +8,6 @@ import './table.css';
 import './overlays.css';
 import './lecture.css';
 import '../move/move.css';
-import { FORMATS } from 'edgeflip/files';
 import type { NamedMesh } from '../engines/index.ts';
 import type { Drop } from '../shell/early-drop.ts';
 import { toggleTheme } from '../shell/theme.ts';
@@ -27,7 +26,7 @@ import { FEW } from './phases.ts';
 import { MovingSamples } from '../move/moving-samples.ts';
 import { FIRST, MOVING, SAMPLES } from '../models/samples.js';
 import type { OpenMesh } from './run.ts';
-import { chosen, dropped, sample, type Source } from './sources.ts';
+import { chosen, dropped, OPENED, sample, type Source } from './sources.ts';
 
 /** The formats that a mesh is saved in besides its own. */
 const SAVED = ['.ply', '.obj', '.glb', '.stl', '.off'];
@@ -61,7 +60,7 @@ export function start(): Tool {
   };
   makeGallery(openSample);
   // A glTF file may have its buffers and textures in other files.
-  controls.file.accept = [...FORMATS, '.gz', '.bin', '.png', '.jpg', '.jpeg', '.webp', '.avif'].join(',');
+  controls.file.accept = [...OPENED, '.gz', '.bin', '.png', '.jpg', '.jpeg', '.webp', '.avif'].join(',');
   controls.file.addEventListener('change', () => {
     open(chosen([...(controls.file.files ?? [])]));
     controls.file.value = '';

@@ -1,12 +1,13 @@
 /** The sources of meshes: samples, chosen files, and dropped files and folders. */
 
 import { proxy } from 'comlink';
-import { FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { FORMATS, POINT_FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { WorkerClient } from './worker-client.ts';
 import type { Drop } from '../shell/early-drop.ts';
 import { BROUGHT, sampleOf } from '../models/samples.js';
-import type { FileExtras } from './file-extras.ts';
+import { FileExtras } from './file-extras.ts';
+import { hasPointsOnly, triangulated } from './file-points.ts';
 import { folderOf, GLTF, plain, type Kept, type Located, type Report } from './files.ts';
 
 /** The β of most meshes. */
@@ -43,13 +44,19 @@ export interface Read {
   others: number;
 }
 
-/** Splits a file's name into the stem and the extension of its format. */
-const EXTENSION = new RegExp(`^(.*)((?:${FORMATS.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+/** The extensions of files that can be opened. */
+export const OPENED = [...FORMATS, ...POINT_FORMATS];
 
-/** The name without its extension, and the extension; `.off` if the mesh is not from a file. */
+const named = (formats: readonly string[]) =>
+  new RegExp(`^(.*)((?:${formats.map((known) => `\\${known}`).join('|')})(?:\\.gz)?)$`, 'i');
+/** Splits a file's name into the stem and the extension of its format. */
+const EXTENSION = named(OPENED);
+const POINTS = named(POINT_FORMATS);
+
+/** The name without its extension, and the extension that the mesh is saved with. */
 export function splitName(name: string): [stem: string, extension: string] {
   const [, stem = name, extension = '.off'] = EXTENSION.exec(name) ?? [];
-  return [stem, extension];
+  return [stem, POINTS.test(name) ? '.off' : extension];
 }
 
 /** A mesh of the page: of a family, or a file that the page brings. */
@@ -100,7 +107,7 @@ export function dropped(event: Drop): Source | undefined {
     if (folders.length > 0 && !files.some(isMesh)) {
       const names = new Intl.ListFormat('en').format(folders);
       const are = folders.length === 1 ? 'is a folder' : 'are folders';
-      throw new Error(`${names} ${are} without a mesh file. Files that can be opened end in ${FORMATS.join(', ')}.`);
+      throw new Error(`${names} ${are} without a mesh file. Files that can be opened end in ${OPENED.join(', ')}.`);
     }
     return readFirst(files, client, report);
   };
@@ -123,7 +130,10 @@ async function gather(event: Drop, folders: readonly string[]): Promise<Located[
 }
 
 async function readFirst(files: readonly Located[], client: WorkerClient, report: Report): Promise<Read> {
-  const meshes = files.filter(isMesh);
+  const known = files.filter(isMesh);
+  // In a folder with a mesh, a table may be anything.
+  const triangles = known.filter(({ file: { name } }) => !POINTS.test(name));
+  const meshes = triangles.length > 0 ? triangles : known;
   const main = meshes[0] ?? files[0];
   if (!main) throw new Error('No file was given.');
   const folder = folderOf(main.path);
@@ -133,10 +143,14 @@ async function readFirst(files: readonly Located[], client: WorkerClient, report
   const { mesh, kept } = await client.call((worker) => worker.read(main, beside, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;
-  return { name: main.file.name, mesh, kept, others };
+  const { name } = main.file;
+  if (!hasPointsOnly(mesh, name)) return { name, mesh, kept, others };
+  // The file cannot be written again with triangles, but its colours can be drawn.
+  const made = await triangulated(mesh, name);
+  return { name, mesh: made, kept: undefined, extras: new FileExtras(made, kept), others };
 }
 
-/** Whether it is a mesh file. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
+/** Whether it is a file of a mesh or of points. Hidden files are not: on some disks, macOS stores `._bunny.ply` next to `bunny.ply`. */
 function isMesh({ file: { name } }: Located): boolean {
   return EXTENSION.test(name) && !name.startsWith('.');
 }
