@@ -1,12 +1,14 @@
 //! Adds vertices to a Delaunay triangulation, and removes them.
 
 use super::circle::is_left_turn;
+use super::ears::Corners;
 use super::slots::{GHOST, next, prev};
 use super::stars::Stars;
 use super::walk::Place;
 use crate::NONE;
 use crate::predicates::area_sign;
 use std::array;
+use std::mem::replace;
 
 impl Stars {
     /// Adds a vertex at its place, which is no vertex, and flips around it. Takes two slots.
@@ -58,41 +60,41 @@ impl Stars {
         let ghost = ring.iter().position(|&h| self.slots.origin(next(h)) == GHOST);
         // On the hull, the ring begins at the symbolic vertex and goes on to the next vertex of the hull.
         ring.rotate_left(ghost.unwrap_or(0));
-        let mut changed = self.cut_ears(vertex, &mut ring, ghost.is_some());
+        let ears = self.cut_ears(vertex, &mut ring, ghost.is_some());
         let free = if ghost.is_none() { self.close(&ring) } else { self.open(&ring) };
         self.half_edges[vertex as usize] = NONE;
-        changed.push(ring[usize::from(ghost.is_some())]);
+        let last = ring[usize::from(ghost.is_some())];
         let is_flat = ghost.is_some() && self.slots.apex(self.slots.twin(next(ring[1]))) == GHOST;
-        Removed { free, changed, is_flat }
+        Removed { free, ears, last, is_flat }
     }
 
     /// Flips edges of a vertex, by half-edges that begin there, as long as a triangle comes off that is positive: until
-    /// three are left, or until the neighbours on the hull turn to the right everywhere. Returns a half-edge of each of
-    /// these triangles.
+    /// three are left, or until the neighbours on the hull turn to the right everywhere. Returns the half-edges of these
+    /// triangles along which they came off.
     ///
     /// Inside the hull, the neighbours are a polygon. If it has more than three corners, it can be triangulated with two
     /// ears that are apart, and the vertex is in one of them at most: so an ear comes off that leaves the vertex in the
     /// polygon, or on its boundary.
     fn cut_ears(&mut self, vertex: u32, ring: &mut Vec<u32>, is_on_hull: bool) -> Vec<u32> {
+        let count = ring.len();
+        let mut corners = Corners::new(count, if is_on_hull { 2..count - 1 } else { 0..count });
+        let most = if is_on_hull { count } else { count - 3 };
         let mut ears = Vec::new();
-        let mut i = if is_on_hull { 2 } else { 0 };
-        while if is_on_hull { i + 1 < ring.len() } else { ring.len() > 3 } {
-            let before = (i + ring.len() - 1) % ring.len();
-            let [h, h_before, h_after] = [i, before, (i + 1) % ring.len()].map(|i| ring[i]);
-            let corners = [h_before, h, h_after].map(|h| self.slots.origin(next(h)));
-            let [a, b, c] = self.points(corners);
+        while ears.len() < most
+            && let Some(three @ [before, corner, _]) = corners.next()
+        {
+            let [p, q, r] = self.points(three.map(|corner| self.slots.origin(next(ring[corner]))));
             let [at] = self.points([vertex]);
-            if is_left_turn(a, b, c) && (is_on_hull || area_sign(a, c, at).is_ge()) {
+            if is_left_turn(p, q, r) && (is_on_hull || area_sign(p, r, at).is_ge()) {
+                let h = replace(&mut ring[corner], NONE);
                 let g = self.slots.twin(h);
                 self.flip(h, g);
                 ears.push(g);
                 ring[before] = prev(h);
-                ring.remove(i);
-                i = if is_on_hull { before.max(2) } else { i.saturating_sub(1) };
-            } else {
-                i = if is_on_hull { i + 1 } else { (i + 1) % ring.len() };
+                corners.cut(three);
             }
         }
+        ring.retain(|&h| h != NONE);
         ears
     }
 
@@ -130,8 +132,9 @@ impl Stars {
 pub(super) struct Removed {
     /// The slots that no triangle has any more.
     pub(super) free: [u32; 2],
-    /// A half-edge of each triangle that is new.
-    pub(super) changed: Vec<u32>,
+    /// The half-edges of the new triangles along which they came off the star, in their order, and one of the last.
+    pub(super) ears: Vec<u32>,
+    pub(super) last: u32,
     /// Whether no triangle is left.
     pub(super) is_flat: bool,
 }

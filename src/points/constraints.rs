@@ -2,14 +2,14 @@
 //! is triangulated from the constraint's first end to its second, and then flips make all Delaunay but for the
 //! constraints: so the result depends on points and constraints only.
 //!
-//! All vertices of a polygon see the constraint: each crossed edge joins two of them across it. So a scan as Graham's,
-//! which cuts off each convex corner at once, finds the triangles of the polygon in linear time. An edge that has the
-//! polygon on both sides is in its boundary twice, once in each direction.
+//! All vertices of a polygon see the constraint: each crossed edge joins two of them across it. So each convex corner is an
+//! ear: no other vertex is in its triangle. It comes off, and the rest is such a polygon again. An edge that has the polygon
+//! on both sides is in its boundary twice, once in each direction.
 
 use super::circle::is_left_turn;
+use super::ears::Corners;
 use super::slots::{next, prev};
 use super::stars::Stars;
-use crate::NONE;
 use crate::mesh::named_edges::{LeftOut, ordered};
 use crate::predicates::area_sign;
 use glam::DVec2;
@@ -177,24 +177,25 @@ impl Stars {
     /// Locks the edge of a part. Adds the half-edges of the triangles that are new.
     fn bring_in(&mut self, Part { ends: [from, to], way }: Part, changed: &mut Vec<u32>) {
         let (slots, right, left) = match way {
-            Way::Edge(h) => return self.lock(h),
+            Way::Edge(h) => return self.lock(h, true),
             Way::Across { slots, right, left } => (slots, right, left),
         };
         let sides: Vec<u32> = right.iter().chain(&left).copied().collect();
         let mut polygons = Polygons::new(self, &sides);
         let mut free = slots.iter().copied();
-        let h = polygons.fill(self, from, 0..right.len(), &mut free);
-        let g = polygons.fill(self, to, right.len()..sides.len(), &mut free);
-        self.slots.join(h, g);
-        self.lock(h);
+        let ears = [
+            polygons.fill(self, from, 0..right.len(), &mut free),
+            polygons.fill(self, to, right.len()..sides.len(), &mut free),
+        ];
+        if let [[first @ .., h], [second @ .., g]] = ears.each_ref().map(Vec::as_slice) {
+            self.slots.join(*h, *g);
+            self.lock(*h, true);
+            self.put_back(first);
+            self.put_back(second);
+        }
         for slot in slots {
             changed.extend(4 * slot..4 * slot + 3);
         }
-    }
-
-    fn lock(&mut self, h: u32) {
-        self.slots.set_locked(h, true);
-        self.slots.set_locked(self.slots.twin(h), true);
     }
 }
 
@@ -216,7 +217,7 @@ impl Part {
     }
 }
 
-/// Whether a point on the line through two points lies behind the first, as seen from there towards the second.
+/// Whether a point on the line through two points is on the side of the second, as seen from the first.
 fn is_ahead([from, to]: [DVec2; 2], point: DVec2) -> bool {
     // One coordinate that differs decides.
     let [from, to, point] = if from.x == to.x { [from.y, to.y, point.y] } else { [from.x, to.x, point.x] };
@@ -243,7 +244,7 @@ enum Beyond {
     Side(usize),
 }
 
-/// An edge from a vertex of the scan to the next: a side, or the half-edge beyond it.
+/// An edge of the polygon: a side, or the half-edge of the ear that came off along it.
 #[derive(Clone, Copy)]
 enum Link {
     Side(usize),
@@ -274,42 +275,41 @@ impl Polygons {
         Self { sides }
     }
 
-    /// Triangulates the polygon of these sides and one more, which closes it and is the half-edge of the result. `first`
-    /// is its first vertex. Takes slots for the triangles.
+    /// Triangulates the polygon of these sides and one more, which closes it. `first` is its first vertex. Takes slots for
+    /// the triangles. Returns the half-edges along which ears came off; the last is that of the side that closes the
+    /// polygon.
     fn fill(
         &mut self,
         stars: &mut Stars,
         first: u32,
         sides: Range<usize>,
         free: &mut impl Iterator<Item = u32>,
-    ) -> u32 {
-        let mut row: Vec<(u32, Link)> = Vec::new();
-        let (mut start, mut closing) = (first, NONE);
-        for i in sides {
-            let mut link = Link::Side(i);
-            let end = self.sides[i].end;
-            while let Some(&(before, before_link)) = row.last() {
-                let corners = [before, start, end];
-                let [p, q, r] = corners.map(|vertex| stars.points[vertex as usize]);
-                if !is_left_turn(p, q, r) {
-                    break;
-                }
-                let Some(slot) = free.next() else { break };
-                let h = stars.put(slot, corners);
-                self.join(stars, before_link, h);
-                self.join(stars, link, next(h));
-                closing = prev(h);
-                link = Link::Cut(closing);
-                row.pop();
-                start = before;
+    ) -> Vec<u32> {
+        let count = sides.len() + 1;
+        let mut links: Vec<Link> = sides.clone().map(Link::Side).collect();
+        let vertex =
+            |corner: usize| if corner == 0 { first } else { self.sides[sides.start + corner - 1].end };
+        let vertices: Vec<u32> = (0..count).map(vertex).collect();
+        let mut corners = Corners::new(count, 1..count - 1);
+        let mut ears = Vec::new();
+        while let Some(three @ [before, corner, _]) = corners.next() {
+            let ends = three.map(|corner| vertices[corner]);
+            let [p, q, r] = stars.points(ends);
+            if is_left_turn(p, q, r)
+                && let Some(slot) = free.next()
+            {
+                let h = stars.put(slot, ends);
+                self.join(stars, links[before], h);
+                self.join(stars, links[corner], next(h));
+                links[before] = Link::Cut(prev(h));
+                ears.push(prev(h));
+                corners.cut(three);
             }
-            row.push((start, link));
-            start = end;
         }
-        closing
+        ears
     }
 
-    /// Makes an edge of the scan and a half-edge twins of each other.
+    /// Makes an edge of the polygon and a half-edge twins of each other.
     fn join(&mut self, stars: &mut Stars, link: Link, h: u32) {
         match link {
             Link::Cut(g) => stars.slots.join(h, g),

@@ -8,6 +8,7 @@ mod circle;
 mod columns;
 mod constraints;
 mod distribution;
+mod ears;
 mod frame;
 mod groups;
 mod halves;

@@ -14,7 +14,8 @@ use glam::DVec2;
 /// If more than one in so many points changes alone, all are moved together.
 const FEW: usize = 32;
 
-/// If more than one vertex in so many would be lifted, the triangulation is made anew.
+/// If more than one vertex in so many would be lifted, or if more edges would flip than there are vertices, the
+/// triangulation is made anew.
 const MANY: usize = 64;
 
 impl Net {
@@ -43,10 +44,16 @@ impl Net {
             return false;
         }
         self.stars.points = points;
+        let mut edges = Vec::new();
+        let mut left = self.indices.len();
         for slot in 0..self.stars.slots.slots.len() as u32 {
             for h in 4 * slot..4 * slot + 3 {
                 if !self.is_free(slot) && h < self.stars.slots.twin(h) && !self.stars.is_delaunay(h) {
-                    self.stars.make_delaunay(vec![h]);
+                    edges.push(h);
+                    left -= self.stars.flip_all(&mut edges, left);
+                    if left == 0 {
+                        return false;
+                    }
                 }
             }
         }
@@ -69,14 +76,24 @@ impl Net {
         let mut left = points.len() / MANY;
         let first = (0..self.stars.slots.slots.len() as u32).map(|slot| 4 * slot);
         let mut triangles: Vec<u32> = first.filter(|h| is_turned(self, h)).collect();
+        let mut turning = Vec::new();
         loop {
-            let vertex = match triangles.pop() {
-                Some(h) if !is_turned(self, &h) => continue,
-                Some(h) => self.farthest(h, points),
-                None => match self.turning(points) {
-                    Some(vertex) => vertex,
-                    None => return true,
-                },
+            let vertex = if let Some(h) = triangles.pop() {
+                if !is_turned(self, &h) {
+                    continue;
+                }
+                self.farthest(h, points)
+            } else if let Some(vertex) = turning.pop() {
+                if !self.is_used(vertex) {
+                    continue;
+                }
+                vertex
+            } else {
+                turning = self.turning(points);
+                if turning.is_empty() {
+                    return true;
+                }
+                continue;
             };
             if left == 0 {
                 return false;
@@ -87,7 +104,8 @@ impl Net {
             if removed.is_flat {
                 return false;
             }
-            triangles.extend(removed.changed);
+            triangles.extend(removed.ears);
+            triangles.push(removed.last);
         }
     }
 
@@ -99,22 +117,19 @@ impl Net {
         farther(a, farther(b, c))
     }
 
-    /// A vertex of the hull where its direction in x, and then in y, changes, and that is neither the first nor the last
-    /// vertex.
-    fn turning(&self, points: &[DVec2]) -> Option<u32> {
+    /// The vertices of the hull where its direction in x, and then in y, changes, but for the first and the last vertex.
+    fn turning(&self, points: &[DVec2]) -> Vec<u32> {
         let hull = self.hull();
         let is_before = |u: u32, v: u32| {
             let [p, q] = [u, v].map(|vertex| points[vertex as usize]);
             p.x < q.x || (p.x == q.x && p.y < q.y)
         };
-        let first = hull.iter().copied().reduce(|u, v| if is_before(v, u) { v } else { u })?;
-        let last = hull.iter().copied().reduce(|u, v| if is_before(u, v) { v } else { u })?;
-        let count = hull.len();
-        (0..count).map(|i| [hull[(i + count - 1) % count], hull[i], hull[(i + 1) % count]]).find_map(
-            |[before, at, after]| {
-                let is_turning = is_before(before, at) != is_before(at, after);
-                (is_turning && at != first && at != last).then_some(at)
-            },
-        )
+        let first = hull.iter().copied().reduce(|u, v| if is_before(v, u) { v } else { u });
+        let last = hull.iter().copied().reduce(|u, v| if is_before(u, v) { v } else { u });
+        let at = |i: usize| hull[i % hull.len()];
+        let rows = (0..hull.len()).map(|i| [at(i), at(i + 1), at(i + 2)]);
+        let is_turning = |&[before, at, after]: &[u32; 3]| is_before(before, at) != is_before(at, after);
+        let turning = rows.filter(is_turning).map(|[_, at, _]| at);
+        turning.filter(|&vertex| Some(vertex) != first && Some(vertex) != last).collect()
     }
 }

@@ -107,9 +107,11 @@ impl Net {
             }
             return true;
         }
-        let Removed { changed, is_flat, .. } = self.take_out(vertex);
+        let Removed { ears, last, is_flat, .. } = self.take_out(vertex);
         if !is_flat {
-            self.stars.make_delaunay(changed.into_iter().flat_map(|h| [h, next(h), prev(h)]).collect());
+            self.stars.put_back(&ears);
+            let triangles = ears.into_iter().chain([last]);
+            self.stars.make_delaunay(triangles.flat_map(|h| [h, next(h), prev(h)]).collect());
         }
         !is_flat
     }

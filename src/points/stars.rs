@@ -65,15 +65,44 @@ impl Stars {
         }
     }
 
-    /// Flips these edges, and all around them, until all are Delaunay that are not locked.
-    pub(super) fn make_delaunay(&mut self, mut edges: Vec<u32>) {
-        while let Some(h) = edges.pop() {
+    /// Flips these edges, and all around them, until all are Delaunay that are not locked, or so many have flipped. Returns
+    /// the number of flips.
+    pub(super) fn flip_all(&mut self, edges: &mut Vec<u32>, most: usize) -> usize {
+        let mut flips = 0;
+        while flips < most
+            && let Some(h) = edges.pop()
+        {
             if !self.is_delaunay(h) {
                 let g = self.slots.twin(h);
                 self.flip(h, g);
                 edges.extend([next(h), prev(h), next(g), prev(g)]);
+                flips += 1;
             }
         }
+        flips
+    }
+
+    /// The same without a limit.
+    pub(super) fn make_delaunay(&mut self, mut edges: Vec<u32>) {
+        self.flip_all(&mut edges, usize::MAX);
+    }
+
+    /// Makes a polygon Delaunay whose corners came off as ears, each along the edge of one of these half-edges: puts them
+    /// back, one after another.
+    pub(super) fn put_back(&mut self, ears: &[u32]) {
+        ears.iter().for_each(|&h| self.lock(h, true));
+        let mut edges = Vec::new();
+        for &h in ears.iter().rev() {
+            self.lock(h, false);
+            edges.push(h);
+            self.flip_all(&mut edges, usize::MAX);
+        }
+    }
+
+    /// Writes whether an edge is locked.
+    pub(super) fn lock(&mut self, h: u32, is_locked: bool) {
+        self.slots.set_locked(h, is_locked);
+        self.slots.set_locked(self.slots.twin(h), is_locked);
     }
 
     /// Whether an edge stays. An edge of the hull does. One to the symbolic vertex does where the hull is convex.

@@ -2,6 +2,7 @@
 
 mod cells;
 mod constraints;
+mod long;
 mod oracle;
 mod session;
 mod threads;
