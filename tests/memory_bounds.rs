@@ -148,9 +148,9 @@ fn points_take_what_they_ask_for() {
             let turned = Positions::from(points.iter().flat_map(|&[x, y]| [y, x]).collect::<Vec<f64>>());
             let session = || {
                 let mut session = PointSession::new(positions, threads).unwrap();
-                session.triangulation();
+                session.triangulation().unwrap();
                 session.update(&turned).unwrap();
-                session.triangulation();
+                session.triangulation().unwrap();
             };
             let (part, ()) = part_of(name, 150 * n, session);
             most[2] = most[2].max(part);

@@ -136,7 +136,7 @@ function notOfNumbers(stride: number | undefined): EdgeflipError {
 
 /** The length of a list, which is read only once: it may be another one the next time. */
 function lengthOf(list: unknown): number {
-  if (!Array.isArray(list)) throw wrong(`${shown(list)} is neither a typed array nor a list`);
+  if (!Array.isArray(list)) throw wrong(`${shown(list)} is neither a typed array of numbers nor a list`);
   const { length } = list;
   if (length > MOST_NUMBERS) throw wrong(`a list has at most ${MOST_NUMBERS} items; pass a typed array`);
   return length;

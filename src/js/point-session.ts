@@ -82,7 +82,7 @@ export class PointSession<Points = VertexArray | readonly number[] | readonly Ar
   /**
    * Moves one point.
    *
-   * @throws {@link EdgeflipError} `invalid-option` if there is no such point; `non-finite`, `invalid-input`, `freed`. Then
+   * @throws {@link EdgeflipError} `invalid-input`, also if there is no such point; `non-finite`, `freed`. Then
    * nothing has changed.
    */
   moveTo(index: number, x: number, y: number): void {

@@ -113,19 +113,23 @@ type Arguments = Parameters<typeof wasm.voronoi>;
 
 /** What the module takes. */
 function argumentsOf(points: unknown, triangulation: unknown, options: unknown, hold: Hold): Arguments {
-  const coordinates = coordinatesOf(points, placesOf(options, BOXED), hold);
-  const bounds = read('the options', () => boundsOf((options as Bounds).bounds));
-  return read('the triangulation', () => {
+  const places = placesOf(options, BOXED);
+  // All that may call functions of the caller comes before the views of its arrays.
+  const lists = read('the triangulation', () => {
     const given = objectOf(triangulation, 'triangulation') as unknown as TriangulationArrays;
-    const words = (name: keyof TriangulationArrays, size: number) => {
-      const what = `triangulation.${name}`;
-      const array = wordsOf(given[name], what);
-      if (array.length % size === 0) return hold(array, what);
-      throw new EdgeflipError('ragged-array', `${what} has ${array.length} numbers, not a multiple of ${size}`);
-    };
-    const [triangles, twins] = [words('triangles', 3), words('twins', 3)];
-    return [coordinates, triangles, twins, words('hull', 1), words('duplicates', 2), bounds];
+    const { triangles, twins, hull, duplicates } = given;
+    return { triangles, twins, hull, duplicates };
   });
+  const bounds = read('the options', () => boundsOf((options as Bounds).bounds));
+  const words = (name: keyof TriangulationArrays, size: number) => {
+    const what = `triangulation.${name}`;
+    const array = wordsOf(lists[name], what);
+    if (array.length % size === 0) return (places.x ? copyOf : hold)(array, what);
+    throw new EdgeflipError('ragged-array', `${what} has ${array.length} numbers, not a multiple of ${size}`);
+  };
+  const [triangles, twins] = [words('triangles', 3), words('twins', 3)];
+  const [hull, duplicates] = [words('hull', 1), words('duplicates', 2)];
+  return [coordinatesOf(points, places, hold), triangles, twins, hull, duplicates, bounds];
 }
 
 /** The four numbers of a box, which the module checks. */

@@ -1,12 +1,11 @@
 //! Adds vertices to a Delaunay triangulation, and removes them.
 
-use super::circle::is_left_turn;
+use super::circle::turn;
 use super::ears::Corners;
 use super::slots::{GHOST, next, prev};
 use super::stars::Stars;
 use super::walk::Place;
 use crate::NONE;
-use crate::predicates::area_sign;
 use std::array;
 use std::mem::replace;
 
@@ -85,7 +84,7 @@ impl Stars {
         {
             let [p, q, r] = self.points(three.map(|corner| self.slots.origin(next(ring[corner]))));
             let [at] = self.points([vertex]);
-            if is_left_turn(p, q, r) && (is_on_hull || area_sign(p, r, at).is_ge()) {
+            if turn(p, q, r).is_gt() && (is_on_hull || turn(p, r, at).is_ge()) {
                 let h = replace(&mut ring[corner], NONE);
                 let g = self.slots.twin(h);
                 self.flip(h, g);

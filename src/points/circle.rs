@@ -35,3 +35,9 @@ fn is_inside_by_order([a, b, c, d]: [DVec2; 4]) -> bool {
 pub(super) fn is_left_turn(a: DVec2, b: DVec2, c: DVec2) -> bool {
     area_sign(a, b, c).is_gt()
 }
+
+/// The sign of the area of a triangle, where a call does not cost much: inlined, it would be larger.
+#[inline(never)]
+pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
+    area_sign(a, b, c)
+}

@@ -222,7 +222,7 @@ impl Scratch {
             }
         }
         if !insertion_sorts(column, Record::is_before) {
-            column.sort_unstable_by(Record::compare);
+            Record::sort(column);
         }
     }
 }

@@ -6,15 +6,20 @@
 //! ear: no other vertex is in its triangle. It comes off, and the rest is such a polygon again. An edge that has the polygon
 //! on both sides is in its boundary twice, once in each direction.
 
-use super::circle::is_left_turn;
+use super::circle::turn;
+use super::distribution::Record;
 use super::ears::Corners;
 use super::slots::{next, prev};
 use super::stars::Stars;
 use crate::mesh::named_edges::{LeftOut, ordered};
-use crate::predicates::area_sign;
+use crate::system::memory;
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::ops::Range;
+
+/// The most bytes that an edge takes beyond the first of its constraint: in a list that grows (36), and what the result has
+/// of it (32).
+const BYTES_PER_EDGE: u64 = 68;
 
 /// Constraints, by the vertices of the slots.
 pub(super) struct Constraints<'a> {
@@ -52,11 +57,19 @@ pub(super) struct Brought {
 
 impl Constraints<'_> {
     /// Brings them in, one after another. Without `skips`, the first that cannot be brought in is the last.
-    pub(super) fn bring_in(&self, stars: &mut Stars) -> Brought {
+    ///
+    /// # Errors
+    /// The bytes that are not there, for constraints through very many points.
+    pub(super) fn bring_in(&self, stars: &mut Stars) -> Result<Brought, u64> {
         let mut brought = Brought { edges: Vec::with_capacity(self.given.len()), left_out: Vec::new() };
         for (index, &ends) in (0..).zip(self.given) {
             match stars.walk(ends) {
                 Ok(parts) => {
+                    let edges = brought.edges.len() + parts.len();
+                    if edges > brought.edges.capacity() {
+                        let bytes = BYTES_PER_EDGE * edges as u64;
+                        memory::check(bytes).map_err(|_| bytes)?;
+                    }
                     brought.edges.extend(parts.iter().map(|&Part { ends: [a, b], .. }| [index, a, b]));
                     let mut changed = Vec::new();
                     parts.into_iter().for_each(|part| stars.bring_in(part, &mut changed));
@@ -71,7 +84,7 @@ impl Constraints<'_> {
                 }
             }
         }
-        brought
+        Ok(brought)
     }
 }
 
@@ -82,15 +95,16 @@ impl Brought {
             return Vec::new();
         }
         // The ends of each edge, and the constraint that it is a part of.
-        let row = |&[index, a, b]: &[u32; 3]| {
+        let record = |[index, a, b]: [u32; 3]| {
             let [a, b] = ordered([a, b]);
-            [a, b, index, 0]
+            Record::of([a, b, index])
         };
-        let mut origins: Vec<[u32; 4]> = self.edges.iter().map(row).collect();
-        origins.sort_unstable();
+        let mut origins: Vec<Record> = self.edges.iter().copied().map(record).collect();
+        Record::sort(&mut origins);
         let reason = |&[index, a, b]: &[u32; 3]| {
-            let first = origins.partition_point(|row| row[..2] < ordered([a, b])[..]);
-            let other = origins.get(first).map_or(0, |row| row[2]);
+            let first = record([0, a, b]);
+            let at = origins.partition_point(|origin| origin.is_before(&first));
+            let other = origins.get(at).map_or(0, |origin| origin.index);
             let [[a, b], [c, d]] = [index, other].map(|i| given[i as usize]);
             let reason = format!(
                 "constraint {index} between {a} and {b} crosses constraint {other} between {c} and {d}"
@@ -134,11 +148,11 @@ impl Stars {
         let point = |vertex: u32| self.points.get(vertex as usize).copied();
         let ends = [point(at)?, point(to)?];
         let x = point(self.slots.origin(next(h)))?;
-        match area_sign(ends[0], ends[1], x) {
+        match turn(ends[0], ends[1], x) {
             Ordering::Equal => is_ahead(ends, x).then_some(Start::Edge(h)),
             Ordering::Less => {
                 let y = point(self.slots.apex(h))?;
-                is_left_turn(ends[0], ends[1], y).then_some(Start::Triangle(h))
+                turn(ends[0], ends[1], y).is_gt().then_some(Start::Triangle(h))
             }
             Ordering::Greater => None,
         }
@@ -156,7 +170,7 @@ impl Stars {
             let g = self.slots.twin(h);
             let far = self.slots.apex(g);
             slots.push(g >> 2);
-            let side = area_sign(ends[0], ends[1], self.points[far as usize]);
+            let side = turn(ends[0], ends[1], self.points[far as usize]);
             if side.is_le() {
                 right.push(next(g));
             }
@@ -295,7 +309,7 @@ impl Polygons {
         while let Some(three @ [before, corner, _]) = corners.next() {
             let ends = three.map(|corner| vertices[corner]);
             let [p, q, r] = stars.points(ends);
-            if is_left_turn(p, q, r)
+            if turn(p, q, r).is_gt()
                 && let Some(slot) = free.next()
             {
                 let h = stars.put(slot, ends);

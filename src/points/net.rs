@@ -2,6 +2,7 @@
 
 use super::changes::Removed;
 use super::columns::Columns;
+use super::distribution::sort_pairs;
 use super::halves::{Network, slots_of};
 use super::numbering::{Numbered, numbered};
 use super::slots::{GHOST, next, prev};
@@ -49,7 +50,7 @@ impl Net {
             vertices[index as usize] = vertices[first as usize];
             copies.push([vertices[first as usize], index]);
         }
-        copies.sort_unstable();
+        sort_pairs(&mut copies);
         Some(Self {
             stars: Stars::new(points, slots),
             indices: places,
@@ -205,7 +206,7 @@ impl Net {
     pub(super) fn duplicates(&self) -> Vec<[u32; 2]> {
         let pair = |&[vertex, index]: &[u32; 2]| [index, self.indices[vertex as usize]];
         let mut pairs: Vec<_> = self.copies.iter().map(pair).collect();
-        pairs.sort_unstable();
+        sort_pairs(&mut pairs);
         pairs
     }
 

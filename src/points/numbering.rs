@@ -1,5 +1,6 @@
 //! Numbers the triangles by the caller's indices, so that the numbers depend on the set of triangles only.
 
+use super::distribution::Record;
 use super::groups::{groups, split, start};
 use super::insertion::insertion_sorts;
 use super::slots::{GHOST, Slot};
@@ -151,7 +152,13 @@ fn sort(rows: impl ExactSizeIterator<Item = Row> + Clone, sorted: &mut Vec<Row>,
     }
     let is_before = |p: &Row, q: &Row| p[0] == q[0] && p[1] < q[1];
     if !insertion_sorts(sorted, is_before) {
-        sorted.sort_unstable();
+        let rows = sorted.clone();
+        let record = |(i, &[first, second, ..]): (u32, &Row)| Record::of([first, second, i]);
+        let mut records: Vec<Record> = (0..).zip(&rows).map(record).collect();
+        Record::sort(&mut records);
+        for (row, Record { index, .. }) in sorted.iter_mut().zip(records) {
+            *row = rows[index as usize];
+        }
     }
 }
 

@@ -16,6 +16,11 @@ use std::num::NonZeroUsize;
 /// given and in the net, and in an update again (48), its index and its vertex (8), and the half-edge of that (4).
 const BYTES_PER_POINT: u64 = 196;
 
+/// The same for what reads the triangles (64), what moves points (64), and what makes room for one more (160).
+const BYTES_TO_READ: u64 = 64;
+const BYTES_TO_MOVE: u64 = 64;
+const BYTES_TO_GROW: u64 = 160;
+
 /// A Delaunay triangulation of points in the plane that move, come and go. After each call it is the one that
 /// [`triangulate`](crate::triangulate) makes of the present points, bit for bit: hull and duplicates change along.
 ///
@@ -27,9 +32,9 @@ const BYTES_PER_POINT: u64 = 196;
 /// let points = Positions::from(vec![0.0, 0.0, 4.0, 0.0, 4.0, 3.0, 0.0, 3.0]);
 /// let mut session = PointSession::new(&points, None)?;
 /// assert_eq!(session.add([2.0, 1.0])?, 4);
-/// assert_eq!(session.triangulation().triangles, [0, 1, 4, 0, 4, 3, 1, 2, 4, 2, 3, 4]);
+/// assert_eq!(session.triangles()?, [0, 1, 4, 0, 4, 3, 1, 2, 4, 2, 3, 4]);
 /// session.move_to(4, [2.0, 5.0])?;
-/// assert_eq!(session.triangulation().hull, [0, 1, 2, 4, 3]);
+/// assert_eq!(session.hull(), [0, 1, 2, 4, 3]);
 /// assert_eq!(session.nearest([3.0, 4.5]), Some(4));
 /// session.remove(4);
 /// assert_eq!(session.locate([1.0, 0.5]), Some([0, 1, 2]));
@@ -76,13 +81,14 @@ impl PointSession {
     /// Moves all points: 2 numbers per point. Those of points that were removed do not count.
     ///
     /// # Errors
-    /// [`Error::PositionCount`], and [`Error::NonFinite`] for the first coordinate that is NaN or infinite. Then nothing has
-    /// changed.
+    /// [`Error::PositionCount`], [`Error::NonFinite`] for the first coordinate that is NaN or infinite, and
+    /// [`Error::OutOfMemory`]. Then nothing has changed.
     pub fn update(&mut self, points: &Positions) -> Result<(), Error> {
         let expected = Dimension::Two.stride() * self.len();
         if points.len() != expected {
             return Err(Error::PositionCount { length: points.len(), expected });
         }
+        memory::check(BYTES_TO_MOVE * self.len() as u64)?;
         let is_moved = |&i: &usize| self.is_present[i] && point_of(points, i) != self.given[i];
         let moved: Vec<usize> = (0..self.len()).filter(is_moved).collect();
         moved.iter().try_for_each(|&i| refuse_non_finite(i, point_of(points, i)))?;
@@ -126,12 +132,15 @@ impl PointSession {
     /// Adds a point. Returns its index. The time is that of [`locate`](Self::locate), unless it gets many neighbours.
     ///
     /// # Errors
-    /// [`Error::NonFinite`], [`Error::TooLarge`]. Then nothing has changed.
+    /// [`Error::NonFinite`], [`Error::TooLarge`], [`Error::OutOfMemory`]. Then nothing has changed.
     pub fn add(&mut self, point: [f64; 2]) -> Result<u32, Error> {
         let index = self.len();
         let point = DVec2::from(point) + DVec2::ZERO;
         refuse_non_finite(index, point)?;
         refuse_many(index + 1)?;
+        if index == self.given.capacity() {
+            memory::check(BYTES_TO_GROW * index as u64)?;
+        }
         self.given.push(point);
         self.is_present.push(true);
         match &mut self.net {
@@ -159,20 +168,33 @@ impl PointSession {
     }
 
     /// The present triangles, twins, hull and duplicates.
-    pub fn triangulation(&mut self) -> Triangulation {
-        self.find_net();
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn triangulation(&mut self) -> Result<Triangulation, Error> {
+        self.prepare_to_read()?;
         let threads = self.pool();
-        let Some(net) = &self.net else { return self.flat(&threads) };
+        let Some(net) = &self.net else { return Ok(self.flat(&threads)) };
         let (triangles, twins) = net.with_twins(&threads);
         let (hull, duplicates) = (numbered_hull(net.hull(), &net.indices), net.duplicates());
-        Triangulation { triangles, twins, hull, duplicates, ..Triangulation::default() }
+        Ok(Triangulation { triangles, twins, hull, duplicates, ..Triangulation::default() })
     }
 
     /// The present triangles: those of [`Self::triangulation`].
-    pub fn triangles(&mut self) -> Vec<u32> {
-        self.find_net();
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn triangles(&mut self) -> Result<Vec<u32>, Error> {
+        self.prepare_to_read()?;
         let threads = self.pool();
-        self.net.as_ref().map_or_else(Vec::new, |net| net.triangles(&threads))
+        Ok(self.net.as_ref().map_or_else(Vec::new, |net| net.triangles(&threads)))
+    }
+
+    fn prepare_to_read(&mut self) -> Result<(), Error> {
+        let bytes = if self.is_stale { BYTES_PER_POINT } else { BYTES_TO_READ };
+        memory::check(bytes * self.len() as u64)?;
+        self.find_net();
+        Ok(())
     }
 
     /// The present hull: that of [`Self::triangulation`].
@@ -187,7 +209,9 @@ impl PointSession {
     /// The triangulation of points without a triangle.
     fn flat(&self, threads: &Threads) -> Triangulation {
         let (points, indices) = self.present();
-        let Triangulation { hull, duplicates, .. } = triangulated(&points, &PointOptions::default(), threads);
+        // Without constraints, it does not fail.
+        let flat = triangulated(&points, &PointOptions::default(), threads).unwrap_or_default();
+        let Triangulation { hull, duplicates, .. } = flat;
         let index = |vertex: u32| indices[vertex as usize];
         Triangulation {
             hull: hull.into_iter().map(index).collect(),

@@ -19,8 +19,8 @@ const MAX_POINTS: usize = MAX_TRIANGLES / 2 + 1;
 const BYTES_PER_POINT: u64 = 136;
 
 /// The most bytes that a constraint of one edge takes: its ends (8), its edge (12), the same to look for the edge that
-/// another crosses (16), and the edge in the result (8).
-const BYTES_PER_CONSTRAINT: u64 = 44;
+/// another crosses (24), and the edge in the result (8).
+const BYTES_PER_CONSTRAINT: u64 = 52;
 
 /// The most bytes that a constraint takes that is left out: its ends (8), itself in a list that grows (36), and its reason
 /// (160).
@@ -98,6 +98,7 @@ pub fn triangulate_with(points: &Positions, options: &PointOptions) -> Result<Tr
     let bytes = if options.skips_constraints { BYTES_PER_SKIPPED } else { BYTES_PER_CONSTRAINT };
     memory::check(BYTES_PER_POINT * count as u64 + bytes * options.constraints.len() as u64)?;
     let triangulation = threads.enter(|| triangulated(points, options, &threads));
+    let triangulation = triangulation.map_err(|bytes| Error::OutOfMemory { bytes, limit: memory::LIMIT })?;
     match triangulation.left_out.first() {
         Some(LeftOut { reason, .. }) if !options.skips_constraints => {
             Err(Error::Option { option: "constraints", message: reason.clone() })
@@ -128,7 +129,13 @@ pub(super) fn refuse_many(count: usize) -> Result<(), Error> {
     Ok(())
 }
 
-pub(super) fn triangulated(points: &Positions, options: &PointOptions, threads: &Threads) -> Triangulation {
+/// # Errors
+/// Those of [`Constraints::bring_in`].
+pub(super) fn triangulated(
+    points: &Positions,
+    options: &PointOptions,
+    threads: &Threads,
+) -> Result<Triangulation, u64> {
     let Columns { points: sorted, indices, starts, duplicates } = Columns::of(points, threads);
     let mut slots = slots_of(sorted.len(), threads);
     let mut vertices = Network::new(&sorted, &mut slots, threads).of_columns(&starts);
@@ -137,7 +144,7 @@ pub(super) fn triangulated(points: &Positions, options: &PointOptions, threads: 
         drop(sorted);
     } else {
         let mut stars = Stars::new(sorted, slots);
-        (constraint_edges, left_out) = brought_in(options, &mut stars, &indices, &duplicates);
+        (constraint_edges, left_out) = brought_in(options, &mut stars, &indices, &duplicates)?;
         slots = stars.slots.slots;
     }
     let numbered = numbered(&slots, &indices, points.len() / 2, threads);
@@ -149,7 +156,7 @@ pub(super) fn triangulated(points: &Positions, options: &PointOptions, threads: 
     } else {
         numbered_hull(vertices, &indices)
     };
-    Triangulation { triangles, twins, hull, duplicates, constraint_edges, left_out }
+    Ok(Triangulation { triangles, twins, hull, duplicates, constraint_edges, left_out })
 }
 
 /// Brings the constraints in. Returns their edges, and those that were left out.
@@ -158,7 +165,7 @@ fn brought_in(
     stars: &mut Stars,
     indices: &[u32],
     duplicates: &[[u32; 2]],
-) -> (Vec<[u32; 2]>, Vec<LeftOut>) {
+) -> Result<(Vec<[u32; 2]>, Vec<LeftOut>), u64> {
     let PointOptions { constraints, skips_constraints, .. } = options;
     let mut vertices = vec![0; indices.len() + duplicates.len()];
     for (vertex, &index) in (0..).zip(indices) {
@@ -168,7 +175,7 @@ fn brought_in(
         vertices[index as usize] = vertices[first as usize];
     }
     let given: Vec<_> = constraints.iter().map(|ends| ends.map(|index| vertices[index as usize])).collect();
-    let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(stars);
+    let brought = Constraints { given: &given, skips: *skips_constraints }.bring_in(stars)?;
     let edges = brought.edges.iter().map(|&[_, a, b]| [a, b].map(|vertex| indices[vertex as usize]));
-    (edges.collect(), brought.left_out(constraints))
+    Ok((edges.collect(), brought.left_out(constraints)))
 }

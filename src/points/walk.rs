@@ -1,9 +1,8 @@
 //! Finds the triangle at a place, by walking.
 
-use super::circle::is_left_turn;
+use super::circle::{is_left_turn, turn};
 use super::slots::{GHOST, next, prev};
 use super::stars::Stars;
-use crate::predicates::area_sign;
 use glam::DVec2;
 
 /// Where a place is in a Delaunay triangulation that has a triangle.
@@ -29,7 +28,7 @@ impl Stars {
             let sides = [h, next(h), prev(h)];
             let signs = sides.map(|h| {
                 let [a, b] = self.points([h, next(h)].map(|h| self.slots.origin(h)));
-                area_sign(a, b, point)
+                turn(a, b, point)
             });
             if let Some(side) = (0..3).find(|&i| signs[i].is_lt()) {
                 h = self.slots.twin(sides[side]);

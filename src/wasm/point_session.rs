@@ -60,14 +60,20 @@ impl PointSession {
     }
 
     /// As [`PointSession::triangulation`](crate::PointSession::triangulation).
+    ///
+    /// # Errors
+    /// Those of [`PointSession::triangulation`](crate::PointSession::triangulation).
     #[wasm_bindgen(unchecked_return_type = "Arrays")]
-    pub fn triangulation(&mut self) -> JsValue {
-        triangulation_object(&self.0.triangulation())
+    pub fn triangulation(&mut self) -> Result<JsValue, JsValue> {
+        self.0.triangulation().map(|result| triangulation_object(&result)).map_err(in_words_of_points)
     }
 
     /// As [`PointSession::triangles`](crate::PointSession::triangles).
-    pub fn triangles(&mut self) -> Uint32Array {
-        Uint32Array::from(&*self.0.triangles())
+    ///
+    /// # Errors
+    /// Those of [`PointSession::triangles`](crate::PointSession::triangles).
+    pub fn triangles(&mut self) -> Result<Uint32Array, JsValue> {
+        self.0.triangles().map(|triangles| Uint32Array::from(&*triangles)).map_err(in_words_of_points)
     }
 
     /// As [`PointSession::hull`](crate::PointSession::hull).

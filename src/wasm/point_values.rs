@@ -37,6 +37,13 @@ pub(super) fn in_words_of_points(error: Error) -> JsValue {
             let rest = message.strip_prefix(&*place).unwrap_or(&message);
             coded(error.code(), &format!("point {vertex}{rest}"))
         }
+        Error::PositionCount { length, expected } => {
+            let message =
+                format!("points has {length} numbers, but the points of the session take {expected}");
+            coded(error.code(), &message)
+        }
+        // That of a point, which is no option.
+        Error::Option { option: "index", message } => coded("invalid-input", &message),
         error => thrown(error),
     }
 }

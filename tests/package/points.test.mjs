@@ -259,7 +259,7 @@ test('errors name the point and what is wrong with it', async () => {
     [new Float32Array(7), {}, 'ragged-array', /1 of 2 coordinates/],
     [new Float64Array(7), { stride: 3 }, 'ragged-array', /1 of 2 coordinates \(stride 3, offset 0\)/],
     [new Int8Array(8), { stride: 3, offset: 1 }, 'ragged-array', /stride 3, offset 1/],
-    [undefined, {}, 'invalid-input', /^points: undefined is neither a typed array nor a list$/],
+    [undefined, {}, 'invalid-input', /^points: undefined is neither a typed array of numbers nor a list$/],
     [null, {}, 'invalid-input', /^points: null is neither/],
     ['0,0,1,0', {}, 'invalid-input', /^points: '0,0,1,0' is neither/],
     [{ length: 6 }, {}, 'invalid-input', /^points: an object is neither/],

@@ -60,8 +60,8 @@ impl Pair {
             duplicates: expected.duplicates.into_iter().map(|pair| pair.map(index)).collect(),
             ..expected
         };
-        assert!(self.session.triangulation() == expected, "{what}");
-        let parts = (self.session.triangles(), self.session.hull());
+        assert!(self.session.triangulation().unwrap() == expected, "{what}");
+        let parts = (self.session.triangles().unwrap(), self.session.hull());
         assert!(parts == (expected.triangles, expected.hull), "{what}");
     }
 
@@ -76,7 +76,7 @@ impl Pair {
         let nearest = (0..at.len()).min_by_key(|&i| (distance(i), i)).map(|i| present[i]);
         assert_eq!(self.session.nearest(place), nearest, "{what}");
         let of = |index: u32| &at[present.binary_search(&index).unwrap()];
-        let triangles = self.session.triangulation().triangles;
+        let triangles = self.session.triangulation().unwrap().triangles;
         let is_there = |&&[a, b, c]: &&[u32; 3]| {
             [[a, b], [b, c], [c, a]].iter().all(|&[u, v]| area(of(u), of(v), place_at) >= BigInt::ZERO)
         };
