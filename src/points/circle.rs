@@ -4,6 +4,12 @@ use crate::predicates::{area_sign, in_circle_sign};
 use glam::DVec2;
 use std::cmp::Ordering;
 
+/// Whether a point is before another by x, and then by y.
+#[inline(always)]
+pub(super) fn is_before(p: DVec2, q: DVec2) -> bool {
+    p.x < q.x || (p.x == q.x && p.y < q.y)
+}
+
 /// Whether `d` is inside the circle through `a`, `b` and `c`, which are counter-clockwise. Of four points on one circle,
 /// the least is taken as a little lower on the paraboloid than it is, so that it is joined to the other three.
 #[inline(always)]
@@ -19,16 +25,15 @@ pub(super) fn is_inside([a, b, c, d]: [DVec2; 4]) -> bool {
 /// their places: so the lowered one takes the place of `d`, and the orientation of the other three decides.
 #[cold]
 fn is_inside_by_order([a, b, c, d]: [DVec2; 4]) -> bool {
-    let is_less = |p: DVec2, q: DVec2| p.x < q.x || (p.x == q.x && p.y < q.y);
     let mut others = [b, c, d];
     let mut least = a;
     for (candidate, rest) in [(b, [c, a, d]), (c, [a, b, d])] {
-        if is_less(candidate, least) {
+        if is_before(candidate, least) {
             (least, others) = (candidate, rest);
         }
     }
     let [p, q, r] = others;
-    is_less(d, least) || area_sign(p, q, r).is_lt()
+    is_before(d, least) || area_sign(p, q, r).is_lt()
 }
 
 #[inline(always)]

@@ -2,6 +2,7 @@
 //! vertex is a number in the order of the columns. The vertices from `a` to `b` have the slots from `2a` to `2b - 2`, so
 //! that two halves never share a slot, and where a triangle is does not depend on what was made first.
 
+use super::circle::is_before;
 use super::seam::Hull;
 use super::slots::{Slot, Slots};
 use crate::predicates::area_sign;
@@ -34,13 +35,7 @@ impl<'a> Network<'a> {
             return (0..self.points.len() as u32).collect();
         }
         let Hull { first, .. } = self.of_row(starts);
-        let mut vertices = vec![self.slots.origin(first)];
-        let mut h = self.slots.along_hull(first);
-        while h != first {
-            vertices.push(self.slots.origin(h));
-            h = self.slots.along_hull(h);
-        }
-        vertices
+        self.slots.hull(first)
     }
 
     /// Triangulates a row of columns. The ends of the hull are the first and the last vertex by x and then by y.
@@ -134,7 +129,6 @@ impl<'a> Network<'a> {
     /// The hull that has this half-edge to the symbolic vertex, from its first vertex by x and then by y to its last.
     fn turned(&self, start: u32) -> Hull {
         let point = |h: u32| self.points[self.slots.origin(h) as usize];
-        let is_before = |p: DVec2, q: DVec2| p.x < q.x || (p.x == q.x && p.y < q.y);
         let [mut first, mut last] = [start; 2];
         let mut h = self.slots.along_hull(start);
         while h != start {

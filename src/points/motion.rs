@@ -6,6 +6,7 @@
 //! place as often as the hull goes around it, which is at most once: they are a triangulation. Its pockets close by flips
 //! with ghosts, as in Graham's scan, whatever their order.
 
+use super::circle::is_before;
 use super::net::Net;
 use super::slots::GHOST;
 use crate::NONE;
@@ -47,8 +48,11 @@ impl Net {
         let mut edges = Vec::new();
         let mut left = self.indices.len();
         for slot in 0..self.stars.slots.slots.len() as u32 {
+            if self.is_free(slot) {
+                continue;
+            }
             for h in 4 * slot..4 * slot + 3 {
-                if !self.is_free(slot) && h < self.stars.slots.twin(h) && !self.stars.is_delaunay(h) {
+                if h < self.stars.slots.twin(h) && !self.stars.is_delaunay(h) {
                     edges.push(h);
                     left -= self.stars.flip_all(&mut edges, left);
                     if left == 0 {
@@ -120,10 +124,7 @@ impl Net {
     /// The vertices of the hull where its direction in x, and then in y, changes, but for the first and the last vertex.
     fn turning(&self, points: &[DVec2]) -> Vec<u32> {
         let hull = self.hull();
-        let is_before = |u: u32, v: u32| {
-            let [p, q] = [u, v].map(|vertex| points[vertex as usize]);
-            p.x < q.x || (p.x == q.x && p.y < q.y)
-        };
+        let is_before = |u: u32, v: u32| is_before(points[u as usize], points[v as usize]);
         let first = hull.iter().copied().reduce(|u, v| if is_before(v, u) { v } else { u });
         let last = hull.iter().copied().reduce(|u, v| if is_before(u, v) { v } else { u });
         let at = |i: usize| hull[i % hull.len()];

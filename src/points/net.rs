@@ -192,14 +192,7 @@ impl Net {
             |&slot: &u32| !self.is_free(slot) && slots.slots[slot as usize].corners[..3].contains(&GHOST);
         let Some(ghost) = (0..slots.slots.len() as u32).find(is_ghost) else { return Vec::new() };
         let to_symbolic = (4 * ghost..4 * ghost + 3).find(|&h| slots.origin(next(h)) == GHOST);
-        let first = to_symbolic.unwrap_or(4 * ghost);
-        let mut vertices = vec![slots.origin(first)];
-        let mut h = slots.along_hull(first);
-        while h != first {
-            vertices.push(slots.origin(h));
-            h = slots.along_hull(h);
-        }
-        vertices
+        slots.hull(to_symbolic.unwrap_or(4 * ghost))
     }
 
     /// The pairs of equal points, sorted.

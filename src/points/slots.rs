@@ -141,4 +141,15 @@ impl<S: DerefMut<Target = [Slot]>> Slots<S> {
     pub(super) fn back_along_hull(&self, h: u32) -> u32 {
         prev(self.twin(h))
     }
+
+    /// The vertices of the hull, counter-clockwise, from the one where this half-edge to the symbolic vertex begins.
+    pub(super) fn hull(&self, first: u32) -> Vec<u32> {
+        let mut vertices = vec![self.origin(first)];
+        let mut h = self.along_hull(first);
+        while h != first {
+            vertices.push(self.origin(h));
+            h = self.along_hull(h);
+        }
+        vertices
+    }
 }

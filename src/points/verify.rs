@@ -2,6 +2,7 @@
 //! triangles are counter-clockwise, twins fit, and the edges without one are a single convex ring; so the triangles cover
 //! the inside of the ring once. Each point is a corner or equals one. Each edge is Delaunay, and so all triangles are.
 
+use super::circle::is_before;
 use crate::mesh::half_edge::next;
 use crate::predicates::{area_sign, in_circle_sign};
 use crate::{Error, NONE, Triangulation};
@@ -24,10 +25,6 @@ pub(super) struct Given<'a> {
 pub(super) fn refused(why: Refusal) -> Error {
     let message = format!("{why}; pass the triangulation of these points, unchanged");
     Error::Option { option: "triangulation", message }
-}
-
-fn is_before(p: DVec2, q: DVec2) -> bool {
-    p.x < q.x || (p.x == q.x && p.y < q.y)
 }
 
 impl<'a> Given<'a> {
