@@ -4,18 +4,10 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';
-import { EdgeflipError, init, PointSession, triangulateSync } from 'edgeflip/points';
-import { KINDS, randomOf } from './points.mjs';
+import { init, PointSession, triangulateSync } from 'edgeflip/points';
+import { KINDS, randomOf, refused } from './points.mjs';
 
 await init();
-
-/** A matcher of the error. */
-const refused = (code, message) => (error) => {
-  assert.ok(error instanceof EdgeflipError, String(error?.stack ?? error));
-  assert.equal(error.code, code, error.message);
-  assert.match(error.message, message);
-  return true;
-};
 
 /** Compares a session with the triangulation of the points that are not `undefined`. */
 function check(session, points) {

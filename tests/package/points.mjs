@@ -1,6 +1,15 @@
-// Sets of points with whole coordinates, and an oracle that triangulates them by integers of any size.
+// Sets of points with whole coordinates, an oracle that triangulates them by integers of any size, and a matcher of errors.
 
 import assert from 'node:assert/strict';
+import { EdgeflipError } from 'edgeflip/points';
+
+/** A matcher of the error. */
+export const refused = (code, message) => (error) => {
+  assert.ok(error instanceof EdgeflipError, String(error?.stack ?? error));
+  assert.equal(error.code, code, error.message);
+  assert.match(error.message, message);
+  return true;
+};
 
 /** A function that returns whole numbers below its argument. */
 export function randomOf(seed) {

@@ -6,19 +6,11 @@ import { test } from 'node:test';
 import { runInNewContext } from 'node:vm';
 import Delaunator from 'delaunator';
 import { makeDelaunay } from 'edgeflip';
-import { EdgeflipError, init, triangulate, triangulateSync } from 'edgeflip/points';
-import { checkTriangulation, KINDS, randomOf } from './points.mjs';
+import { init, triangulate, triangulateSync } from 'edgeflip/points';
+import { checkTriangulation, KINDS, randomOf, refused } from './points.mjs';
 
 await init();
 const NONE = 0xffffffff;
-
-/** A matcher of the error. */
-const refused = (code, message) => (error) => {
-  assert.ok(error instanceof EdgeflipError, String(error?.stack ?? error));
-  assert.equal(error.code, code, error.message);
-  assert.match(error.message, message);
-  return true;
-};
 
 test('before `init`, the error says what to do; `triangulate` loads the module itself', () => {
   const program = `import { triangulate, triangulateSync } from 'edgeflip/points';

@@ -5,19 +5,11 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';
 import { Delaunay } from 'd3-delaunay';
-import { EdgeflipError, init, triangulateSync, voronoi, voronoiSync } from 'edgeflip/points';
-import { KINDS, randomOf } from './points.mjs';
+import { init, triangulateSync, voronoi, voronoiSync } from 'edgeflip/points';
+import { KINDS, randomOf, refused } from './points.mjs';
 
 await init();
 const NONE = 0xffffffff;
-
-/** A matcher of the error. */
-const refused = (code, message) => (error) => {
-  assert.ok(error instanceof EdgeflipError, String(error?.stack ?? error));
-  assert.equal(error.code, code, error.message);
-  assert.match(error.message, message);
-  return true;
-};
 
 /** The corners of a cell. */
 const cellOf = ({ starts, corners }, i) =>
