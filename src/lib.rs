@@ -48,6 +48,7 @@ pub use mesh::dimension::Dimension;
 pub use mesh::edges::Edges;
 pub use mesh::half_edge::NONE;
 pub use mesh::named_edges::LeftOut;
+pub use mesh::plane::Plane;
 pub use mesh::positions::Positions;
 pub use mesh::{MAX_TRIANGLES, Mesh};
 pub use phases::reason::{Reason, Reasons};

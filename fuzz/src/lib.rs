@@ -4,7 +4,7 @@
 //! this, and so does `tests/native/fuzz_seeds.rs`.
 
 use edgeflip::io::{Coordinates, Format, Loaded, ReadOptions, parse_edges, parse_numbers, parse_with};
-use edgeflip::{Dimension, Error, Mesh, Options, Positions, make_delaunay, quality};
+use edgeflip::{Dimension, Error, Mesh, Options, Plane, Positions, make_delaunay, quality};
 use std::ops::ControlFlow;
 
 /// The most bytes of a file, and of its mesh.
@@ -52,7 +52,8 @@ fn check_points(format: Format, bytes: &[u8]) {
     for dimension in [None, Some(Dimension::Two), Some(Dimension::Three)] {
         match read(format, bytes, dimension, Vec::new()) {
             Ok(mut loaded) => {
-                let (made, plan) = loaded.triangulate().unwrap();
+                let made = loaded.triangulate(Plane::Xy).unwrap();
+                let plan = loaded.mesh.plan(Plane::Xy).unwrap();
                 assert_eq!(flipped(&plan, &Options::default()), made.triangles);
                 assert!(whole_way(&loaded, bytes).is_empty());
             }

@@ -7,7 +7,7 @@ use super::gzip;
 use super::obj;
 use super::original::Original;
 use super::write::{collected, write_to};
-use crate::{Dimension, Error, Mesh, Options, Positions, Triangulation, Welded, triangulate, welded};
+use crate::{Dimension, Error, Mesh, Options, Plane, Triangulation, Welded, triangulate, welded};
 use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
@@ -58,24 +58,16 @@ impl Loaded {
         self.document.is_none() && self.mesh.triangle_count() == 0 && self.mesh.vertex_count() > 0
     }
 
-    /// Gives a mesh of points their Delaunay triangulation, by x and y: z is carried along. Returns the triangulation, and
-    /// the mesh in the plane. A file of the same format is then written as one of another format is.
+    /// Gives a mesh of points their Delaunay triangulation in this plane: heights are carried along. A file of the same
+    /// format is then written as one of another format is.
     ///
     /// # Errors
-    /// Those of [`triangulate`].
-    pub fn triangulate(&mut self) -> Result<(Triangulation, Mesh), Error> {
-        let positions = self.mesh.positions();
-        let plan: Positions = match (self.mesh.dimension(), positions) {
-            (Dimension::Two, _) => positions.clone(),
-            (Dimension::Three, Positions::F32(numbers)) => without_z(numbers).into(),
-            (Dimension::Three, Positions::F64(numbers)) => without_z(numbers).into(),
-        };
-        let triangulation = triangulate(&plan)?;
-        let triangles = &triangulation.triangles;
-        self.mesh = self.mesh.with_triangles(triangles.clone())?;
+    /// Those of [`triangulate`] and [`Mesh::plan`].
+    pub fn triangulate(&mut self, plane: Plane) -> Result<Triangulation, Error> {
+        let triangulation = triangulate(self.mesh.plan(plane)?.positions())?;
+        self.mesh = self.mesh.with_triangles(triangulation.triangles.clone())?;
         self.original = None;
-        let plan = Mesh::new(Dimension::Two, plan, triangles.clone())?;
-        Ok((triangulation, plan))
+        Ok(triangulation)
     }
 
     /// What a file of that format loses of [`Loaded::dropped`].
@@ -171,11 +163,6 @@ impl Loaded {
             })
         })
     }
-}
-
-/// x and y of each of these points.
-fn without_z<T: Copy>(numbers: &[T]) -> Vec<T> {
-    numbers.as_chunks().0.iter().flat_map(|&[x, y, _]| [x, y]).collect()
 }
 
 /// The content of a file to write.

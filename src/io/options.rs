@@ -1,6 +1,6 @@
 //! The options for reading a file.
 
-use crate::{Dimension, Error};
+use crate::{Dimension, Error, Plane};
 
 /// The floats that coordinates are read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,9 @@ pub struct ReadOptions {
     /// Whether the mesh is in the plane. `None`: it is in the plane if the file has two coordinates per vertex or every
     /// z is 0; a glTF file is always in space.
     pub dimension: Option<Dimension>,
+    /// The plane of a terrain, which has three coordinates per vertex then: polygons are cut as seen from above.
+    /// [`Mesh::plan`](crate::Mesh::plan) gives its plan. `None`: polygons are cut as seen along their normal.
+    pub plane: Option<Plane>,
     /// The floats of the coordinates. `None`: those of a binary file; in text 32-bit floats, if each of them, rounded to
     /// as many digits as its number in the file has, is that number, else 64-bit floats. Then the coordinates are those
     /// that the file shows. A [`Mesh`](crate::Mesh) has 32-bit floats wherever they are the same.
@@ -40,6 +43,7 @@ impl Default for ReadOptions {
     fn default() -> Self {
         Self {
             dimension: None,
+            plane: None,
             coordinates: None,
             external_files: false,
             keep: true,

@@ -117,13 +117,14 @@ fn finish(parsed: Parsed, options: &ReadOptions) -> Result<(Loaded, Others), Err
         _ => None,
     };
     let dimension = match (options.dimension, raised) {
+        _ if options.plane.is_some() => Dimension::Three,
         (Some(Dimension::Two), Some(vertex)) => {
             let mut z = Vec::new();
             Digits::default().coordinate(&mut z, &positions, 3 * vertex + 2);
             return Err(Error::Parse {
                 place: format!("vertex {vertex}"),
                 message: format!(
-                    "z is {}, but every z must be 0 in the 2D mesh that was requested",
+                    "z is {}, but every z must be 0 in the 2D mesh that was requested; a terrain needs plane",
                     z.escape_ascii()
                 ),
             });
@@ -137,7 +138,11 @@ fn finish(parsed: Parsed, options: &ReadOptions) -> Result<(Loaded, Others), Err
         Positions::F64(numbers) => with_stride(numbers, stride, dimension.stride()).into(),
     };
     let count = faces.triangles.len() / 3;
-    let polygons = if count > MAX_TRIANGLES { Polygons::default() } else { faces.cut(&positions, dimension) };
+    let polygons = if count > MAX_TRIANGLES {
+        Polygons::default()
+    } else {
+        faces.cut(&positions, dimension, options.plane)
+    };
     let mesh =
         Mesh::checked(dimension, positions, faces.triangles, &Threads::default().for_triangles(count))?;
     let loaded = Loaded {

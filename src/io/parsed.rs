@@ -3,7 +3,7 @@
 use super::pieces;
 use super::polygon::{self, Cut};
 use crate::system::threads::Threads;
-use crate::{Dimension, Positions};
+use crate::{Dimension, Plane, Positions};
 use glam::DVec3;
 
 /// The most polygons of one piece of work.
@@ -78,13 +78,21 @@ impl CutFaces {
         Self { triangles: pieces::joined(triangles, threads), faces, polygons }
     }
 
-    /// Cuts the polygons that their fans leave in another way.
-    pub(super) fn cut(&mut self, positions: &Positions, dimension: Dimension) -> Polygons {
+    /// Cuts the polygons that their fans leave in another way: along their normals, or from above in a plane.
+    pub(super) fn cut(
+        &mut self,
+        positions: &Positions,
+        dimension: Dimension,
+        plane: Option<Plane>,
+    ) -> Polygons {
         let threads = Threads::default().for_triangles(self.polygons.len());
         let stride = dimension.stride();
         let point = |vertex: u32| {
             let at = |axis| if axis < stride { positions.at(stride * vertex as usize + axis) } else { 0.0 };
-            DVec3::new(at(0), at(1), at(2))
+            match plane.map(Plane::axes) {
+                Some([u, v]) => DVec3::new(at(u), at(v), 0.0),
+                None => DVec3::new(at(0), at(1), at(2)),
+            }
         };
         let cuts = threads.map_each(self.polygons.chunks(POLYGONS).collect(), |piece: &[Polygon]| {
             let mut corners = Vec::new();

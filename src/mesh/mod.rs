@@ -10,6 +10,7 @@ pub(crate) mod embedded;
 pub(crate) mod extremes;
 pub(crate) mod half_edge;
 pub(crate) mod named_edges;
+pub(crate) mod plane;
 pub(crate) mod positions;
 pub(crate) mod recent;
 pub(crate) mod star;

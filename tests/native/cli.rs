@@ -9,6 +9,7 @@ mod ignore_options;
 mod joins;
 mod lock_options;
 mod shown;
+mod terrain;
 mod usage;
 
 use crate::command::{Folder, SQUARE, grid, run, text};
@@ -17,7 +18,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 37] = [
+const KEYS: [&str; 38] = [
     "input",
     "vertices",
     "triangles",
@@ -26,6 +27,7 @@ const KEYS: [&str; 37] = [
     "non_manifold_edges",
     "inconsistent_edges",
     "dimension",
+    "plane",
     "coordinates",
     "crossing_polygons",
     "points",

@@ -2,7 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use edgeflip::io::{Coordinates, Format, ReadOptions};
-use edgeflip::{Backend, Dimension, Options, Order};
+use edgeflip::{Backend, Dimension, Options, Order, Plane};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,8 @@ Formats, by extension:
          without names the first two or three columns. Separated by commas, semicolons or tabs
   .xyz   points: two or three numbers in each line
 A file of points, also an OFF, OBJ or PLY file without faces, gets the Delaunay triangulation of
-its points by x and y; heights are carried along. Such a file is not written: OUT is a mesh.
+its points by x and y, or in the --plane; heights are carried along. Such a file is not written:
+OUT is a mesh.
 Each format may be gzip'd: IN under any name, OUT if .gz follows the extension, as in bunny.ply.gz.
 Vertices keep their number and order. Polygons are cut into triangles.
 
@@ -46,6 +47,7 @@ Examples:
   edgeflip map.ply -o map.ply --constraints borders.txt
   edgeflip part.off -o part.obj --backend cpu --json --quiet | jq .flips
   edgeflip points.csv -o terrain.ply
+  edgeflip terrain.glb -o terrain.glb --plane xz
   edgeflip scan.ply.gz -o - | ssh host 'cat >scan.ply.gz'";
 
 /// Makes a triangle mesh Delaunay by flipping edges.
@@ -81,6 +83,13 @@ pub struct Args {
     /// Whether the mesh lies in the plane or in space
     #[arg(long, value_enum, default_value_t, value_name = "DIM")]
     pub dimension: DimensionArg,
+
+    /// The plane of a terrain: these two coordinates decide, and the third, the height, is carried along
+    ///
+    /// xy for GIS files, where z is up; xz where y is up, as in most files for games and in glTF. The mesh counts as one in
+    /// the plane: --constraints and --untangle are allowed, and a normal has no effect. The heights of OUT are those of IN.
+    #[arg(long, value_enum, value_name = "PLANE")]
+    pub plane: Option<PlaneArg>,
 
     /// The bits of the floats that coordinates are read as
     #[arg(long, value_enum, default_value_t, value_name = "BITS")]
@@ -149,7 +158,8 @@ pub struct Args {
 
     /// Edges to bring in before the run: a text file with the two vertices of an edge in each line
     ///
-    /// Only in the plane. The edges that they cross flip away; then they are locked. A vertex on such an edge splits it.
+    /// Only in the plane, or with --plane. The edges that they cross flip away; then they are locked. A vertex on such an
+    /// edge splits it.
     /// Vertices count as for --lock-edges. An edge that crosses another one of the list, a locked edge or the boundary
     /// is an error.
     #[arg(long, value_name = "FILE")]
@@ -216,7 +226,7 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
-    /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
+    /// plane (xy, xz or yz; null without --plane), coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
     /// notes), points (null for a mesh: heights, whether they have a third coordinate; hull, the points on it,
     /// counter-clockwise; duplicates, each point that equals an earlier one, and that one), backend, adapter, fallback,
     /// status (done or stopped), iterations, flips, constraint_flips, left_out (for each constraint left out, its index
@@ -278,12 +288,22 @@ impl Args {
         let is_same = Format::of(&self.input).is_ok_and(|input| input == output);
         ReadOptions {
             dimension,
+            plane: self.plane(),
             coordinates,
             max_bytes: self.max_bytes,
             external_files: self.external_files,
             keep: is_same && !self.drop_attributes && !self.weld,
             ignore_attributes: self.ignore_attribute.clone(),
         }
+    }
+
+    /// `--plane`.
+    pub fn plane(&self) -> Option<Plane> {
+        self.plane.map(|plane| match plane {
+            PlaneArg::Xy => Plane::Xy,
+            PlaneArg::Xz => Plane::Xz,
+            PlaneArg::Yz => Plane::Yz,
+        })
     }
 
     /// The options for the library, without locks.
@@ -337,17 +357,28 @@ pub enum BackendArg {
 }
 
 /// `--dimension`.
-#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ValueEnum)]
 pub enum DimensionArg {
     /// In the plane if every z is 0, or else in space; glTF always in space
     #[default]
     Auto,
-    /// In the plane; a z other than 0 is refused
+    /// In the plane; a z other than 0 is refused without --plane
     #[value(name = "2")]
     Two,
-    /// In space, even if every z is 0
+    /// In space, even if every z is 0; --plane is refused
     #[value(name = "3")]
     Three,
+}
+
+/// `--plane`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum PlaneArg {
+    /// z is up
+    Xy,
+    /// y is up
+    Xz,
+    /// x is up
+    Yz,
 }
 
 /// `--order`.

@@ -11,9 +11,10 @@ pub struct Failure {
 }
 
 /// What messages about files end with, and the same with a flag.
-const ENDS: [[&str; 2]; 2] = [
+const ENDS: [[&str; 2]; 3] = [
     ["external_files allows it", "--external-files allows it"],
     ["max_bytes sets the limit", "--max-bytes sets the limit"],
+    ["a terrain needs plane", "a terrain needs --plane"],
 ];
 
 impl Failure {
@@ -21,7 +22,7 @@ impl Failure {
     pub fn of_run(args: &Args, error: &Error) -> Self {
         let Error::Option { option, message } = error else { return Self::of(&args.input, error) };
         if let Some(list) = args.list(option) {
-            return Self { status: 1, line: format!("{}: {message}", list.display()) };
+            return Self { status: 1, line: format!("{}: {}", list.display(), with_flag(message)) };
         }
         // The number of threads was checked, so the system could not start them.
         let status = if *option == "threads" { 1 } else { 2 };
@@ -40,9 +41,7 @@ impl Failure {
                 format!("{}: {error}", path.display())
             }
             Error::Parse { place, message } => {
-                let end = ENDS.iter().find_map(|[end, flag]| Some((message.strip_suffix(end)?, *flag)));
-                let (start, end) = end.unwrap_or((message, ""));
-                format!("{}: {place}: {start}{end}", path.display())
+                format!("{}: {place}: {}", path.display(), with_flag(message))
             }
             Error::Io { .. }
             | Error::UnknownFormat { .. }
@@ -56,4 +55,11 @@ impl Failure {
         };
         Self { status, line }
     }
+}
+
+/// A message of the library whose end names the flag instead of the option.
+fn with_flag(message: &str) -> String {
+    let end = ENDS.iter().find_map(|[end, flag]| Some((message.strip_suffix(end)?, *flag)));
+    let (start, end) = end.unwrap_or((message, ""));
+    format!("{start}{end}")
 }

@@ -11,12 +11,12 @@ mod signals;
 mod threads;
 mod words;
 
-use args::Args;
+use args::{Args, DimensionArg};
 use clap::Parser;
 use edgeflip::io::{self, Output, Staged};
 use edgeflip::{
-    Backend, EarlyGpu, EngineKind, Error, Mesh, Options, Order, Outcome, Welded, close_gpu, make_delaunay,
-    quality, reoriented,
+    Backend, EarlyGpu, EngineKind, Error, Mesh, Options, Order, Outcome, Plane, Welded, close_gpu,
+    make_delaunay, quality, reoriented,
 };
 use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -79,6 +79,10 @@ struct Done {
 /// The whole run except printing. It writes the output last, and only if nothing has failed.
 fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let refused = |error| Failure::of_run(args, &error);
+    if args.plane.is_some() && args.dimension == DimensionArg::Three {
+        let line = "option --plane: a terrain is a mesh in the plane; leave out --dimension 3".to_owned();
+        return Err(Failure { status: 2, line });
+    }
     let output = output(args)?;
     let bar = &progress(args, &output);
     bar.set_message(format!("reading {}", args.input.display()));
@@ -89,13 +93,16 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     ms.load = clock.lap();
     let leaves = loaded.keeps(output.format()) && !output.is_beside(&args.input);
     let left_behind = if leaves { loaded.leave_folder() } else { Vec::new() };
-    let points = loaded.has_points_only().then(|| loaded.triangulate()).transpose().map_err(refused)?;
-    let (points, plan) = points.map(|(made, plan)| (Points::new(made, &loaded), plan)).unzip();
-    let welded = (args.weld && plan.is_none()).then(|| loaded.welded()).transpose().map_err(refused)?;
-    let (alone, welded, turned) =
-        turn(args, plan.as_ref().unwrap_or(&loaded.mesh), welded).map_err(refused)?;
+    let has_points = loaded.has_points_only();
+    let points = has_points.then(|| loaded.triangulate(args.plane().unwrap_or(Plane::Xy)));
+    let points = points.transpose().map_err(refused)?.map(|made| Points::new(made, &loaded));
+    let welded = (args.weld && !has_points).then(|| loaded.welded()).transpose().map_err(refused)?;
+    let (alone, welded, turned) = turn(args, &loaded.mesh, welded).map_err(refused)?;
     let joined = welded.as_ref().map(|welded| &welded.mesh);
-    let mesh = alone.as_ref().or(joined).or(plan.as_ref()).unwrap_or(&loaded.mesh);
+    let surface = alone.as_ref().or(joined).unwrap_or(&loaded.mesh);
+    let plane = args.plane().or(has_points.then_some(Plane::Xy));
+    let plan = plane.map(|plane| surface.plan(plane)).transpose().map_err(refused)?;
+    let mesh = plan.as_ref().unwrap_or(surface);
     let triangles = mesh.triangle_count();
     let mut constraints = list(&args.constraints, triangles, io::read_edges)?;
     points.iter().for_each(|points| points.in_triangles(&mut constraints));
@@ -132,7 +139,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     ms.measure = ms.measure.map(|before| before + clock.lap());
     let check = args.verify.then(|| {
         bar.set_message("verifying");
-        check(&options, mesh, &outcome)
+        check(&options, mesh, surface, &outcome)
     });
     ms.verify = check.as_ref().map(|_| clock.lap());
     let mut staged = None;
@@ -148,6 +155,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let violation = check.as_ref().and_then(|check| check.violation(&args.input));
     let report = changes.map(|changes| {
         Report::new(args, mesh, outcome, changes, turned, check, ms)
+            .with_plane(plane, surface)
             .with_points(points)
             .with_joined(welded.as_ref())
             .with_attributes(&loaded, output.format(), attribute_edges)
@@ -251,9 +259,9 @@ fn turn(
     })
 }
 
-/// Runs the independent check. A different count of the edges left, or of the triangles that are turned over or flat, is
+/// Runs the independent check. `surface` is the mesh with its heights. A different count of the edges left, or of the triangles that are turned over or flat, is
 /// also a violation.
-fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
+fn check(options: &Options, mesh: &Mesh, surface: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit_outcome(mesh, outcome, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();
     if audit.remaining != outcome.remaining {
@@ -275,7 +283,7 @@ fn check(options: &Options, mesh: &Mesh, outcome: &Outcome) -> Check {
         remaining_edges,
         inverted_triangles: audit.inverted,
         flat_triangles: audit.flat,
-        distance: quality::distance(mesh, &outcome.triangles),
+        distance: quality::distance(surface, &outcome.triangles),
     }
 }
 

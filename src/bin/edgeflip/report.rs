@@ -6,7 +6,9 @@ use crate::points::Points;
 use crate::words::{FLAT, INVERTED, change, first, first_edges, kept, reasons, short};
 use edgeflip::io::{AttributeEdges, Format, Loaded};
 use edgeflip::quality::{self, Measures};
-use edgeflip::{Dimension, Error, LeftOut, Mesh, Outcome, Positions, Reasons, Status, Timings, Welded};
+use edgeflip::{
+    Dimension, Error, LeftOut, Mesh, Outcome, Plane, Positions, Reasons, Status, Timings, Welded,
+};
 use indicatif::{HumanBytes, HumanCount};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -25,6 +27,7 @@ pub struct Report {
     non_manifold_edges: u64,
     inconsistent_edges: u64,
     dimension: usize,
+    plane: Option<&'static str>,
     coordinates: u32,
     crossing_polygons: Vec<u32>,
     points: Option<Points>,
@@ -58,6 +61,8 @@ pub struct Report {
     pub ms: Milliseconds,
     #[serde(flatten)]
     check: Option<Check>,
+    #[serde(skip)]
+    has_heights: bool,
     #[serde(skip)]
     left: Reasons,
     #[serde(skip)]
@@ -194,6 +199,7 @@ impl Report {
             non_manifold_edges: outcome.non_manifold_edges,
             inconsistent_edges: outcome.inconsistent_edges,
             dimension: mesh.dimension().stride(),
+            plane: None,
             coordinates: if matches!(mesh.positions(), Positions::F64(_)) { 64 } else { 32 },
             crossing_polygons: Vec::new(),
             points: None,
@@ -227,9 +233,23 @@ impl Report {
             attribute_edges_by_name: Vec::new(),
             ms,
             check,
+            has_heights: false,
             left: outcome.remaining,
             notes: Vec::new(),
         }
+    }
+
+    /// Adds the plane of a terrain, and a note if it may be the wrong one. `surface` has the heights.
+    pub fn with_plane(mut self, plane: Option<Plane>, surface: &Mesh) -> Self {
+        self.has_heights = plane.is_some() && surface.dimension() == Dimension::Three;
+        self.plane = plane.filter(|_| self.has_heights).map(Plane::name);
+        if self.has_heights
+            && self.inverted > 0
+            && let Some(right) = surface.terrain_plane()
+        {
+            self.notes.push(format!("in the plane {} no triangle is turned over: --plane {0}", right.name()));
+        }
+        self
     }
 
     /// Adds what became of points.
@@ -308,7 +328,11 @@ impl Report {
         let bits = if self.coordinates == 64 { ", 64-bit coordinates" } else { "" };
         let found = match &self.points {
             Some(points) => points.found(self.vertices),
-            None => format!("{vertices} vertices, {triangles} triangles, {}D", self.dimension),
+            None => {
+                let plane =
+                    self.plane.map(|plane| format!(" with heights, plane {plane}")).unwrap_or_default();
+                format!("{vertices} vertices, {triangles} triangles, {}D{plane}", self.dimension)
+            }
         };
         line("read", format!("{}: {found}{bits}", self.input));
         if let Some(points) = &self.points {
@@ -381,7 +405,7 @@ impl Report {
         let distance =
             self.check.as_ref().map(|check| format!(", the surface by up to {}", short(check.distance)));
         let is_surface = self.dimension == Dimension::Three.stride();
-        let distance = distance.filter(|_| is_surface).unwrap_or_default();
+        let distance = distance.filter(|_| is_surface || self.has_heights).unwrap_or_default();
         if self.turned_triangles > 0 {
             line("turned", format!("{} triangles", HumanCount(self.turned_triangles.into())));
         }

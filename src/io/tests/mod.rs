@@ -12,7 +12,7 @@ mod polygon;
 mod stl;
 
 use super::*;
-use crate::{Dimension, Error, Mesh, Options, Positions};
+use crate::{Dimension, Error, Mesh, Options, Plane, Positions};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -236,7 +236,7 @@ fn the_requested_dimension_is_used() {
     mesh(forced("2OFF 1 0\n1 2", Three), Three, &[1., 2., 0.], &[]);
     refused(
         forced(raised, Two),
-        "vertex 1: z is 0.25, but every z must be 0 in the 2D mesh that was requested",
+        "vertex 1: z is 0.25, but every z must be 0 in the 2D mesh that was requested; a terrain needs plane",
     );
 }
 

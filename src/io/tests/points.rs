@@ -82,10 +82,10 @@ fn text_decides_the_floats_of_points() {
 #[test]
 fn points_are_triangulated_and_keep_their_heights() {
     let mut loaded = xyz("0 0 5\n4 0 6\n4 3 7\n0 3 8\n4 0 9\n").unwrap();
-    let (made, plan) = loaded.triangulate().unwrap();
+    let made = loaded.triangulate(Plane::Xy).unwrap();
     assert_eq!(made.triangles, [0, 1, 2, 0, 2, 3]);
     assert_eq!(made.duplicates, [[4, 1]]);
-    assert_eq!((plan.dimension(), plan.triangles()), (Two, loaded.mesh.triangles()));
+    assert_eq!(loaded.mesh.triangles(), made.triangles);
     assert_eq!(loaded.mesh.positions().at(14), 9.0);
     assert!(!loaded.has_points_only());
     let written = loaded.file_bytes("a.off", made.triangles).unwrap();

@@ -63,7 +63,7 @@ pub fn constrained(
     let refuse = |message| Err(Error::Option { option: "constraints", message });
     if mesh.dimension() == Dimension::Three {
         return refuse(
-            "constraints need a mesh of dimension 2; edges of a surface can only be locked".to_owned(),
+            "constraints need a mesh of dimension 2; edges of a surface can only be locked; a terrain needs plane".to_owned(),
         );
     }
     let vertices = mesh.vertex_count();

@@ -286,7 +286,7 @@ fn the_dimension_can_be_forced() {
     let raised = folder.file("in.off", SQUARE.replace("1 1 0", "1 1 0.5"));
     let output = folder.path("out.off");
     let line = format!(
-        "{}: vertex 2: z is 0.5, but every z must be 0 in the 2D mesh that was requested",
+        "{}: vertex 2: z is 0.5, but every z must be 0 in the 2D mesh that was requested; a terrain needs --plane",
         raised.display()
     );
     failed(&run(&raised, &output, &["--dimension", "2"]), 1, &line);
