@@ -2,7 +2,7 @@
 
 import { EdgeflipError } from './error.js';
 import { isWhole, objectOf, read, shown } from './given.js';
-import { checkDimension, MESH } from './mesh.js';
+import { checkDimension, MESH, widthOf } from './mesh.js';
 import { checkSpelling, namesOf } from './names.js';
 import type { DeviceMesh, GpuBuffer, GpuDevice, Mesh } from './types.js';
 
@@ -43,23 +43,26 @@ export async function readDeviceMesh(given: DeviceMesh, device: GpuDevice): Prom
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`. */
-function partsOf(given: DeviceMesh): { parts: [Part, Part]; rest: Pick<Mesh, 'dimension' | 'stride' | 'offset'> } {
+function partsOf(given: DeviceMesh): {
+  parts: [Part, Part];
+  rest: Pick<Mesh, 'dimension' | 'plane' | 'stride' | 'offset'>;
+} {
   return read('the mesh', () => {
-    const { positions, indices, dimension, stride, offset, vertices, triangles } = objectOf(
+    const { positions, indices, dimension, plane, stride, offset, vertices, triangles } = objectOf(
       given,
       'mesh',
     ) as unknown as DeviceMesh;
     checkSpelling(given, DEVICE_MESH, 'mesh');
-    checkDimension(dimension);
-    const step = stride ?? dimension;
-    const numbers =
-      vertices === undefined || vertices === 0 ? vertices : (offset ?? 0) + (vertices - 1) * step + dimension;
+    checkDimension(dimension, plane);
+    const width = widthOf({ dimension, plane });
+    const step = stride ?? width;
+    const numbers = vertices === undefined || vertices === 0 ? vertices : (offset ?? 0) + (vertices - 1) * step + width;
     return {
       parts: [
         partOf(positions, 'positions', vertices, numbers),
         partOf(indices, 'indices', triangles, triangles === undefined ? undefined : 3 * triangles),
       ],
-      rest: { dimension, stride, offset },
+      rest: { dimension, plane, stride, offset },
     };
   });
 }

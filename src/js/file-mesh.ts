@@ -2,7 +2,7 @@
 
 import type { IndexedMesh } from './mesh.js';
 import type { FindFile } from './settings.js';
-import type { Files, Original } from './types.js';
+import type { Files, Original, Plane } from './types.js';
 
 /**
  * A mesh that was read: all vertices of the file, in its order, and its faces as triangles. The positions are a
@@ -55,6 +55,11 @@ export interface FileMesh extends IndexedMesh {
 export interface ReadOptions {
   /** Default: 2 if the file has two coordinates per vertex or every z is 0, else 3. For glTF always 3. */
   dimension?: 2 | 3 | undefined;
+  /**
+   * The plane of a terrain. The mesh then has this plane, the dimension 2, and 3 numbers per vertex. Polygons are cut as
+   * seen from above.
+   */
+  plane?: Plane | undefined;
   /**
    * The bits of the floats that coordinates are read as. Default: those of a binary file; in text 32, if each float,
    * rounded to as many digits as its number in the file has, is that number, else 64. Then the coordinates are those

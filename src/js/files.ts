@@ -17,7 +17,7 @@ import { EdgeflipError, fromModule } from './error.js';
 import type { FileMesh, ReadOptions, WriteOptions } from './file-mesh.js';
 import { copyOf, read, shown, viewOf, wordsOf } from './given.js';
 import { areFilesLoaded, loadFiles } from './load-files.js';
-import { checkDimension, type Mesh32, moduleMesh } from './mesh.js';
+import { checkDimension, inSpace, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
 import { namesOf, optionsOf } from './names.js';
 import {
@@ -175,6 +175,7 @@ export const init = initOf('files', { files: loadFiles });
 
 const READ_OPTIONS = namesOf<ReadOptions>({
   dimension: true,
+  plane: true,
   coordinates: true,
   maxBytes: true,
   files: true,
@@ -201,11 +202,12 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
   const failures: unknown[] = [];
   const { dimension, files, ...more } = read('the options', () => {
     const given = optionsOf(options, READ_OPTIONS) as ReadOptions;
-    const { dimension, coordinates, maxBytes, files, ignoreAttributes } = given;
-    if (dimension !== undefined) checkDimension(dimension);
+    const { plane, dimension = plane && 2, coordinates, maxBytes, files, ignoreAttributes } = given;
+    if (dimension !== undefined) checkDimension(dimension, plane);
     const found = typeof files === 'function' ? foundBy(files, failures) : filesOf(files, held);
     return {
       dimension,
+      plane,
       files: found,
       maxBytes: maxBytesOf(maxBytes),
       coordinates: coordinatesOf(coordinates),
@@ -216,14 +218,16 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
   if (view.length >= 2 ** 32) throw new EdgeflipError('file-too-large', 'the file has more than 4294967295 bytes');
   const content = held(view, 'bytes');
   try {
-    return await call(() => wasm.readMesh({ bytes: content, name: file, files, ...more }, dimension));
+    const mesh = await call(() => wasm.readMesh({ bytes: content, name: file, files, ...more }, dimension));
+    return more.plane ? { ...mesh, dimension: 2, plane: more.plane } : mesh;
   } catch (error) {
     throw failures.length > 0 ? failures[0] : error;
   }
 }
 
 /**
- * The bytes of a file that holds the mesh. If the mesh is in the plane, every z is 0. In OFF and OBJ each number has
+ * The bytes of a file that holds the mesh. If the mesh is in the plane, every z is 0, unless it has a `plane` and so
+ * heights. In OFF and OBJ each number has
  * the fewest digits from which its 32 or 64 bits follow; {@link readMesh} needs `coordinates: 64` to read the same 64
  * bits, if 32-bit floats show all digits. PLY is binary and keeps all bits. STL is binary, and its positions are
  * rounded to 32-bit floats, as in glTF.
@@ -234,13 +238,16 @@ export async function readMesh(bytes: Uint8Array, name: string, options: ReadOpt
  * `invalid-option` if its positions differ from those of the mesh or if flips crossed its seams.
  */
 export async function writeMesh(mesh: Mesh, name: string, options: WriteOptions = {}): Promise<Bytes> {
-  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const { positions, indices, dimension } = inSpace(moduleMesh(mesh, held));
   const file = textOf(name, 'name');
   const original = read('the options', () => {
     const { original } = optionsOf(options, WRITE_OPTIONS) as WriteOptions;
     return original === undefined ? undefined : originalOf(original, held);
   });
-  if (original) return call(() => wasm.rewriteMesh(original, positions, indices, dimension, file));
+  if (original) {
+    const { plane } = mesh;
+    return call(() => wasm.rewriteMesh({ ...original, plane }, positions, indices, dimension, file));
+  }
   return call(() => wasm.writeMesh(positions, indices, dimension, file));
 }
 
@@ -288,7 +295,7 @@ export async function reorient(mesh: Mesh): Promise<Reoriented> {
  * @throws {@link EdgeflipError} about the mesh; `invalid-input`; those of {@link readMesh} about the original.
  */
 export async function weld(mesh: Mesh, attributes: Attributes = [], turns = false): Promise<Welded> {
-  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const { positions, indices, dimension } = inSpace(moduleMesh(mesh, held));
   const given = attributesOf(attributes, held);
   if (!isList(given)) return call(() => welded(wasm.Weld.ofFile(given, indices, dimension, Boolean(turns))));
   const vertices = positions.length / dimension;
@@ -372,7 +379,7 @@ export async function measures(mesh: Mesh): Promise<Measures> {
  * @throws {@link EdgeflipError} about the mesh; `triangle-count`.
  */
 export async function change(mesh: Mesh, after: IndexArray): Promise<Change> {
-  const { positions, indices, dimension } = moduleMesh(mesh, held);
+  const { positions, indices, dimension } = inSpace(moduleMesh(mesh, held));
   const changed = held(wordsOf(after, 'indices'), 'indices');
   return call(() => wasm.change(positions, indices, dimension, changed));
 }

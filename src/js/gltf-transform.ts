@@ -12,16 +12,26 @@
 import type { Accessor, Document, ILogger, Primitive, Transform } from '@gltf-transform/core';
 import { EdgeflipError } from './error.js';
 import { makeDelaunay } from './index.js';
-import { type Limited, limitsOf, runWithin, type ShiftOptions, type ShiftResult } from './limited.js';
+import {
+  type Limited,
+  limitsOf,
+  runWithin,
+  type ShiftOptions,
+  type ShiftResult,
+  type TerrainOptions,
+} from './limited.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Matrix, stretched, stretches } from './placement.js';
 import { type Columns, meshOf, pointsOf, sequence, type Surface, unitOf } from './surface.js';
 import type { MakeDelaunayOptions, Reason, Reasons, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
-export type { ShiftOptions } from './limited.js';
+export type { ShiftOptions, TerrainOptions } from './limited.js';
 
-/** The options of {@link delaunay}. `maxDeviation` is in the units of each mesh. */
+/**
+ * The options of {@link delaunay}. `maxDeviation` is in the units of each mesh. `constraints` are vertices of a primitive,
+ * so the document may have only one; a `plane` is that of the primitive's own coordinates.
+ */
 export interface DelaunayOptions
   extends Pick<
       MakeDelaunayOptions,
@@ -35,6 +45,7 @@ export interface DelaunayOptions
       | 'device'
       | 'signal'
     >,
+    TerrainOptions,
     ShiftOptions {
   /**
    * By default, vertices at the same position are joined for the run, and all their attributes are compared, also those
@@ -55,6 +66,10 @@ const OPTIONS = namesOf<DelaunayOptions>({
   signal: true,
   weld: true,
   maxAttributeShift: true,
+  plane: true,
+  constraints: true,
+  skipConstraints: true,
+  untangle: true,
 });
 
 /** Modes of primitives. */
@@ -90,6 +105,10 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
   const largest = new Map<string, number>();
   const remaining: Reasons = {};
   const alike = surfacesOf(document, logger);
+  if (options.constraints !== undefined && alike.length > 1) {
+    const why = `its vertices are those of one primitive, and the document has ${alike.length}`;
+    throw new EdgeflipError('invalid-option', `option constraints: ${why}`);
+  }
   const limits = limitsIn(alike, options);
   for (const { name, primitives, stretch } of alike) {
     if (options.signal?.aborted) break;
@@ -107,7 +126,7 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
     for (const [reason, count] of Object.entries(result.remaining)) {
       remaining[reason as Reason] = (remaining[reason as Reason] ?? 0) + count;
     }
-    if (result.flips + result.turnedTriangles === 0) continue;
+    if (result.flips + result.turnedTriangles + result.constraintFlips === 0) continue;
     changed += 1;
     write(document, primitives, indices);
   }
@@ -127,14 +146,14 @@ async function flipped(
   primitive: Primitive,
   stretch: Matrix | undefined,
   most: ReadonlyMap<string, number>,
-  { maxAttributeShift: _, ...options }: DelaunayOptions,
+  { maxAttributeShift: _, plane, ...options }: DelaunayOptions,
 ): Promise<Result & ShiftResult> {
   const limits = [...most].flatMap(([name, most]) => {
     const attribute = primitive.getAttribute(name);
     return attribute ? { name, ...numbersOf(attribute), most } : [];
   });
   const joining = options.weld === false ? 'none' : options.weld ? 'all' : 'equal';
-  const given = meshOf(surfaceOf(primitive, stretch), options);
+  const given = meshOf(surfaceOf(primitive, stretch), plane, options);
   const limited: Limited = { limits, joining };
   const { result, ...shifts } = await runWithin(limited, ...given, async (mesh, options) => ({
     result: await makeDelaunay(mesh, options),
@@ -143,10 +162,18 @@ async function flipped(
 }
 
 /** The largest shifts that are allowed, for the attributes of all primitives. */
-function limitsIn(alike: readonly Alike[], { maxAttributeShift, weld }: DelaunayOptions): Map<string, number> {
+function limitsIn(
+  alike: readonly Alike[],
+  { maxAttributeShift, weld, constraints }: DelaunayOptions,
+): Map<string, number> {
   const semantics = alike.flatMap(({ primitives }) => primitives[0]!.listSemantics());
   const names = [...new Set(semantics)].filter((name) => name !== 'POSITION');
-  return limitsOf(maxAttributeShift, names, (name) => name.startsWith('TEXCOORD_'), weld);
+  return limitsOf(
+    maxAttributeShift,
+    names,
+    (name) => name.startsWith('TEXCOORD_'),
+    weld === true || constraints !== undefined,
+  );
 }
 
 /** The numbers of an accessor that the shaders get. */

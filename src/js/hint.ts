@@ -1,7 +1,7 @@
 /** Advice about a run whose mesh or page seems to be set up in a way that its developer does not want. */
 
 import type { Layout } from './mesh.js';
-import type { IndexArray, Result } from './types.js';
+import type { IndexArray, Plane, Result } from './types.js';
 
 /** The longest stride that advice is given about. */
 const MOST_STRIDE = 32;
@@ -11,21 +11,28 @@ const LISTED = 'verify lists these triangles.';
 /** The fields of a result that advice is based on. */
 type Outcome = Pick<Result, 'edges' | 'boundaryEdges' | 'nonManifoldEdges' | 'inverted' | 'flat'>;
 
+/** What advice is also based on. */
+interface Circumstances {
+  /** The number of edges that `weld` locked; `undefined` without `weld`. */
+  seams: number | undefined;
+  /** Whether triangles that had turned over have become positive, where that was possible. */
+  untangles: boolean | undefined;
+  /** Finds the plane in which no triangle is turned over, if the mesh has a plane. */
+  rightPlane: ((indices: Uint32Array) => Plane | undefined) | undefined;
+  /** Why the CPU engine has one thread, if it could use more. */
+  alone: string | undefined;
+}
+
 /**
  * Advice, as sentences, or `undefined`.
  *
  * @param indices - The triangles, with the vertices of the mesh.
- * @param seams - The number of edges that `weld` locked; `undefined` without `weld`.
- * @param untangles - Whether triangles that had turned over have become positive, where that was possible.
- * @param alone - Why the CPU engine has one thread, if it could use more.
  */
 export function hintOf(
   { edges, boundaryEdges, nonManifoldEdges, inverted, flat }: Outcome,
   indices: Uint32Array,
   layout: Layout<IndexArray>,
-  seams: number | undefined,
-  untangles: boolean | undefined,
-  alone: string | undefined,
+  { seams, untangles, rightPlane, alone }: Circumstances,
 ): string | undefined {
   const hints: string[] = [];
   const inner = edges - boundaryEdges - nonManifoldEdges;
@@ -42,7 +49,7 @@ export function hintOf(
   const stride = forgottenStride(indices, layout);
   if (stride !== undefined) {
     const isSpace = layout.dimension === 2 && stride === 3;
-    const pass = isSpace ? 'dimension: 3, or stride: 3 for a mesh in the plane' : `stride: ${stride}`;
+    const pass = isSpace ? "dimension: 3, or for a terrain plane: 'xy', 'xz' or 'yz'" : `stride: ${stride}`;
     hints.push(
       `The triangles use only the first ${layout.dimension}/${stride} of the vertices. If positions have ${stride} numbers per vertex, pass ${pass}.`,
     );
@@ -52,6 +59,11 @@ export function hintOf(
       ? 'no triangulation of these positions was found: problems says why, or another component has an edge that theirs would need'
       : 'no flip could turn them back; untangle: true does, where the positions have a triangulation';
     hints.push(`Triangles that are turned over: ${inverted}. They overlap their neighbours, and ${remedy}. ${LISTED}`);
+    const plane = rightPlane?.(indices);
+    if (plane) hints.push(`In the plane ${plane} no triangle is turned over: pass plane: '${plane}'.`);
+    else if (!layout.plane && layout.dimension === 2 && layout.stride === 3) {
+      hints.push("If the mesh is a terrain and z is not up, pass plane: 'xz' or 'yz'.");
+    }
   }
   if (flat > 0) {
     const remedy = layout.dimension === 2 && !untangles ? 'Pass untangle: true, move' : 'Move';

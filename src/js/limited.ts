@@ -2,11 +2,11 @@
 
 import { EdgeflipError } from './error.js';
 import { copyOf, read, shown } from './given.js';
-import { readMesh } from './mesh.js';
+import { inSpace, readMesh } from './mesh.js';
 import type { Run } from './renderer.js';
 import { MAKE_OPTIONS, settingsOf, watchOf } from './settings.js';
 import type { Joining, Limit } from './shift.js';
-import type { MakeDelaunayOptions, Mesh } from './types.js';
+import type { MakeDelaunayOptions, Mesh, Plane } from './types.js';
 
 /** The option that limits how far flips shift textures. */
 export interface ShiftOptions {
@@ -17,9 +17,19 @@ export interface ShiftOptions {
    * together shift an attribute further than that, the edges that they crossed stay too, and the run starts again. More
    * oblique cameras are not measured, nor are silhouettes and light. `Infinity` sets no limit. Default: 1/1024 for
    * texture coordinates, one texel of a texture with 1,024 texels in a row, and `Infinity` for other attributes; with
-   * `weld: true`, which ignores attributes, `Infinity` for all.
+   * `weld: true`, which ignores attributes, and with `constraints`, `Infinity` for all. With a `plane`, the camera is
+   * above the terrain.
    */
   maxAttributeShift?: number | Readonly<Record<string, number>> | undefined;
+}
+
+/** The options of a terrain, besides those of a surface. */
+export interface TerrainOptions extends Pick<MakeDelaunayOptions, 'constraints' | 'skipConstraints' | 'untangle'> {
+  /**
+   * The plane of a terrain: these two coordinates decide, and the third, the height, counts for nothing. In three.js and
+   * glTF y is up: `'xz'`. The options `constraints`, `skipConstraints` and `untangle` need it.
+   */
+  plane?: Plane | undefined;
 }
 
 /** What `maxAttributeShift` did. */
@@ -47,14 +57,14 @@ const TEXEL = 1 / 1024;
  *
  * @param names - All attributes that can have one.
  * @param isTexture - Whether an attribute of this name has texture coordinates.
- * @param weld - The option `weld`.
+ * @param isOff - Whether no attribute has a limit by default.
  * @throws {@link EdgeflipError} `invalid-option`.
  */
 export function limitsOf(
   given: unknown,
   names: readonly string[],
   isTexture: (name: string) => boolean,
-  weld: unknown,
+  isOff: boolean,
 ): Map<string, number> {
   const wrong = (why: string) => new EdgeflipError('invalid-option', `option maxAttributeShift: ${why}`);
   const checked = (value: unknown) => {
@@ -63,7 +73,7 @@ export function limitsOf(
   };
   return read('the options', () => {
     const isList = typeof given === 'object' && given !== null;
-    const ofTextures = given === undefined || isList ? (weld === true ? Infinity : TEXEL) : checked(given);
+    const ofTextures = given === undefined || isList ? (isOff ? Infinity : TEXEL) : checked(given);
     const limits = new Map(names.filter(isTexture).map((name) => [name, ofTextures]));
     for (const [name, value] of Object.entries(isList ? given : {})) {
       if (value === undefined) continue;
@@ -90,7 +100,9 @@ export async function runWithin(
   if (limits.length === 0) return { ...(await run(mesh, options)), shiftEdges: 0, largestShifts: {} };
   const { isStopped: _, ...watch } = watchOf(options);
   const settings = settingsOf(options, MAKE_OPTIONS);
-  const [copy] = readMesh(mesh, copyOf);
+  const [copy, { plane }] = readMesh(mesh, copyOf);
+  const { positions, indices } = inSpace(copy);
+  const again = { positions, indices, dimension: copy.dimension, plane, stride: 3 };
   // Without textures, this code is not loaded.
   const { Attributes } = await import('./shift.js');
   const attributes = new Attributes(copy, limits, joining);
@@ -100,7 +112,7 @@ export async function runWithin(
     const lockedEdges = new Uint32Array(given.length + own.length);
     lockedEdges.set(given);
     lockedEdges.set(own, given.length);
-    const made = await run({ ...copy, stride: 3 }, { ...watch, ...settings, lockedEdges });
+    const made = await run(again, { ...watch, ...settings, lockedEdges });
     const shiftEdges = own.length / 2;
     if (made.onGpu) return { ...hinted(made, shiftEdges), shiftEdges, largestShifts: undefined };
     const largest = attributes.compare(made.result.indices);

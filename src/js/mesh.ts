@@ -16,14 +16,27 @@ import {
 } from './given.js';
 import { checkSpelling, namesOf } from './names.js';
 import type { Hold } from './settings.js';
-import type { IndexArray, Indices, Mesh } from './types.js';
+import type { IndexArray, Indices, Mesh, Plane } from './types.js';
 
 /** The names of the fields of a mesh. */
-export const MESH = namesOf<Mesh>({ positions: true, indices: true, dimension: true, stride: true, offset: true });
+export const MESH = namesOf<Mesh>({
+  positions: true,
+  indices: true,
+  dimension: true,
+  plane: true,
+  stride: true,
+  offset: true,
+});
+
+/**
+ * The axes of each plane, in the order in which a triangle that is counter-clockwise from above is positive, as in
+ * `src/mesh/plane.rs`.
+ */
+export const AXES: Readonly<Record<Plane, readonly number[]>> = { xy: [0, 1], xz: [2, 0], yz: [1, 2] };
 
 /** A mesh with 32-bit indices whose positions are floats without gaps, as the modules take and return it. */
 export interface IndexedMesh extends Mesh<Uint32Array> {
-  /** 2 or 3 numbers per vertex. */
+  /** 2 or 3 numbers per vertex; 3 with a plane. */
   positions: Float32Array | Float64Array;
   /** Positions have no gaps. */
   stride?: undefined;
@@ -37,9 +50,19 @@ export interface Mesh32 extends IndexedMesh {
   positions: Float32Array;
 }
 
+/** A mesh that was read. */
+export interface ReadMesh extends IndexedMesh {
+  /** All three coordinates of the vertices, if the mesh has a plane. `positions` has the two of the plane. */
+  space?: Floats | undefined;
+}
+
+/** Positions as the modules take them. */
+export type Floats = Float32Array | Float64Array;
+
 /** Where the positions of a mesh are in its array. */
 interface Places {
   dimension: 2 | 3;
+  plane?: Plane | undefined;
   stride: number;
   offset: number;
 }
@@ -62,18 +85,20 @@ export interface Layout<I extends IndexArray> extends AllPlaces {
  *
  * @throws {@link EdgeflipError} `invalid-input`, `ragged-array`, `too-large`.
  */
-export function readMesh<I extends IndexArray>(given: Mesh<I>, hold: Hold = copyOf): [IndexedMesh, Layout<I>] {
+export function readMesh<I extends IndexArray>(given: Mesh<I>, hold: Hold = copyOf): [ReadMesh, Layout<I>] {
   return read('the mesh', () => {
-    const { positions, indices, dimension, stride, offset } = objectOf(given, 'mesh') as unknown as Mesh<I>;
+    const { positions, indices, dimension, plane, stride, offset } = objectOf(given, 'mesh') as unknown as Mesh<I>;
     checkSpelling(given, MESH, 'mesh');
-    checkDimension(dimension);
-    const places = placesOf(dimension, stride, offset);
-    const points = floatsOf(positions, places, hold);
+    checkDimension(dimension, plane);
+    const places = placesOf(dimension, plane, stride, offset);
+    const space = plane && spaceOf(positions, places, hold);
+    const points = space ? planOf(space, plane) : floatsOf(positions, places, hold);
+    if (space) checkPlan(points, plane);
     const view = viewOf(indices, ['Uint32Array'], 'indices');
     const words = view ? hold(view, 'indices') : wordsOf(indices, 'indices');
     const vertices = Math.floor(points.length / dimension);
     const layout = { ...places, vertices, hasStride: stride !== undefined, give: giverOf(indices) };
-    return [{ positions: points, indices: words, dimension }, layout];
+    return [{ positions: points, indices: words, dimension, space }, layout];
   });
 }
 
@@ -82,8 +107,13 @@ export function readMesh<I extends IndexArray>(given: Mesh<I>, hold: Hold = copy
  *
  * @throws {@link EdgeflipError} `invalid-input`, `too-large`.
  */
-export function moduleMesh(given: Mesh, hold: Hold): IndexedMesh {
+export function moduleMesh(given: Mesh, hold: Hold): ReadMesh {
   return readMesh(given, hold)[0];
+}
+
+/** The same with all coordinates. */
+export function inSpace({ positions, indices, dimension, space }: ReadMesh): IndexedMesh {
+  return space ? { positions: space, indices, dimension: 3 } : { positions, indices, dimension };
 }
 
 /**
@@ -91,14 +121,64 @@ export function moduleMesh(given: Mesh, hold: Hold): IndexedMesh {
  *
  * @throws {@link EdgeflipError} `too-large`.
  */
-export function copied({ positions, indices, dimension }: IndexedMesh): IndexedMesh {
-  return { positions: copyOf(positions, 'positions'), indices: copyOf(indices, 'indices'), dimension };
+export function copied({ positions, indices, dimension, space }: ReadMesh): ReadMesh {
+  return {
+    positions: copyOf(positions, 'positions'),
+    indices: copyOf(indices, 'indices'),
+    dimension,
+    space: space && copyOf(space, 'positions'),
+  };
 }
 
 /** @throws {@link EdgeflipError} `invalid-input`: a program without types may pass anything. */
-export function checkDimension(dimension: number): void {
-  if (dimension === 2 || dimension === 3) return;
-  throw new EdgeflipError('invalid-input', `dimension: ${shown(dimension)} is not 2 or 3`);
+export function checkDimension(dimension: number, plane?: unknown): void {
+  if (dimension !== 2 && dimension !== 3) {
+    throw new EdgeflipError('invalid-input', `dimension: ${shown(dimension)} is not 2 or 3`);
+  }
+  if (plane === undefined) return;
+  if (!Object.hasOwn(AXES, plane as Plane)) {
+    throw new EdgeflipError('invalid-input', `plane: ${shown(plane)} is not 'xy', 'xz' or 'yz'`);
+  }
+  if (dimension === 3) throw new EdgeflipError('invalid-input', 'dimension: a mesh with a plane has dimension 2');
+}
+
+/** All coordinates, with those that a plane leaves out, as {@link floatsOf}. */
+export function spaceOf(given: Mesh['positions'], places: Places, hold: Hold): Floats {
+  return floatsOf(given, { ...places, dimension: widthOf(places) }, hold);
+}
+
+/** The two coordinates of a plane. */
+function planOf(space: Floats, plane: Plane): Floats {
+  const [u, v] = AXES[plane] as [number, number];
+  const plan = new (space.constructor as Float64ArrayConstructor)((space.length / 3) * 2);
+  for (let to = 0, from = 0; to < plan.length; from += 3) {
+    plan[to++] = space[from + u]!;
+    plan[to++] = space[from + v]!;
+  }
+  return plan;
+}
+
+/**
+ * The two coordinates of a plane, of all vertices of a mesh.
+ *
+ * @throws {@link EdgeflipError} `position-count`.
+ */
+export function planOfAll(space: Floats, plane: Plane, vertices: number): Floats {
+  if (space.length === 3 * vertices) return planOf(space, plane);
+  const message = `positions has ${space.length} numbers, but the vertices of the mesh take ${3 * vertices}`;
+  throw new EdgeflipError('position-count', message);
+}
+
+/**
+ * The modules would name other axes.
+ *
+ * @throws {@link EdgeflipError} `non-finite`.
+ */
+export function checkPlan(plan: Floats, plane: Plane): void {
+  const at = plan.findIndex((x) => !Number.isFinite(x));
+  if (at < 0) return;
+  const axis = 'xyz'[AXES[plane][at % 2]!];
+  throw new EdgeflipError('non-finite', `vertex ${at >> 1}: coordinate ${axis} is ${plan[at]}, not a finite number`);
 }
 
 /**
@@ -106,11 +186,7 @@ export function checkDimension(dimension: number): void {
  *
  * @throws {@link EdgeflipError} `invalid-input`, `ragged-array`, `too-large`.
  */
-export function floatsOf(
-  given: Mesh['positions'],
-  { dimension, stride, offset }: Places,
-  hold: Hold,
-): Float32Array | Float64Array {
+export function floatsOf(given: Mesh['positions'], { dimension, stride, offset }: Places, hold: Hold): Floats {
   const view = viewOf(given, NUMBERS, 'positions') ?? floatsOfList(given, 'positions');
   const isFloat = view instanceof Float32Array || view instanceof Float64Array;
   if (isFloat && stride === dimension && offset === 0) return hold(view, 'positions');
@@ -131,12 +207,16 @@ export function floatsOf(
   return floats;
 }
 
-function placesOf(dimension: 2 | 3, stride: number = dimension, offset = 0): Places {
+/** The count of numbers of a vertex. */
+export const widthOf = ({ dimension, plane }: Pick<Places, 'dimension' | 'plane'>): 2 | 3 => (plane ? 3 : dimension);
+
+function placesOf(dimension: 2 | 3, plane?: Plane, stride: number = widthOf({ dimension, plane }), offset = 0): Places {
+  const width = widthOf({ dimension, plane });
   const wrong = (name: string, value: unknown, what: string) =>
     new EdgeflipError('invalid-input', `${name}: ${shown(value)} is not ${what}`);
-  if (!isWhole(stride) || stride < dimension) throw wrong('stride', stride, `a whole number of at least ${dimension}`);
+  if (!isWhole(stride) || stride < width) throw wrong('stride', stride, `a whole number of at least ${width}`);
   if (!isWhole(offset)) throw wrong('offset', offset, 'a whole number of 32 bits');
-  return { dimension, stride, offset };
+  return { dimension, plane, stride, offset };
 }
 
 /** Converts indices to the type of an array: every index of a result is one of the input. */

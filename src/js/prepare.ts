@@ -2,7 +2,7 @@
 
 import { type Constrained, constrain, reorient, weld, type Welded } from './files.js';
 import { moduleOfUntangler } from './load.js';
-import type { IndexedMesh } from './mesh.js';
+import { type IndexedMesh, inSpace, type ReadMesh } from './mesh.js';
 import type { Settings } from './settings.js';
 import { started } from './untangler.js';
 
@@ -38,7 +38,7 @@ export interface Prepared extends Preparation {
  * Applies the options `weld`, `reorient`, `untangle` and `constraints`, in this order. The result has the other settings.
  */
 export async function prepare(
-  mesh: IndexedMesh,
+  mesh: ReadMesh,
   { weld: attributes, reorient: turns, constraints, skipConstraints, ...settings }: Settings,
 ): Promise<Prepared> {
   const prepared = await untangled(mesh, await joined(mesh, settings, attributes, turns));
@@ -48,7 +48,7 @@ export async function prepare(
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
   const { constraintEdges, flips, leftOut, ...made } = await constrain(
-    { ...mesh, indices },
+    { positions: mesh.positions, indices, dimension: mesh.dimension },
     ends,
     locks,
     skipConstraints,
@@ -71,17 +71,17 @@ export async function prepare(
 }
 
 async function joined(
-  mesh: IndexedMesh,
+  mesh: ReadMesh,
   settings: Settings,
   attributes: Settings['weld'],
   turns = false,
 ): Promise<Prepared> {
   if (attributes) {
-    const welded = await weld(mesh, attributes, turns);
+    const welded = await weld(inSpace(mesh), attributes, turns);
     const { indices, turned } = welded;
     return { indices, turned, welded, settings: { ...settings, ...locks(welded, settings) } };
   }
-  return turns ? { ...(await reorient(mesh)), settings } : { indices: mesh.indices, settings };
+  return turns ? { ...(await reorient(inSpace(mesh))), settings } : { indices: mesh.indices, settings };
 }
 
 /** Untangles a mesh in the plane. The modules of the engines refuse a surface in space. */

@@ -3,7 +3,7 @@
 import { hintOf } from './hint.js';
 import type { Layout } from './mesh.js';
 import type { Preparation } from './prepare.js';
-import type { IndexArray, Result } from './types.js';
+import type { IndexArray, Plane, Result } from './types.js';
 import type { Session } from './wasm/edgeflip.js';
 
 /** How the package prepared the mesh and ran the CPU engine. */
@@ -14,13 +14,15 @@ export interface Context extends Preparation {
   alone?: string | undefined;
   /** Whether triangles that had turned over have become positive, where that was possible. */
   untangles?: boolean | undefined;
+  /** Finds the plane in which no triangle is turned over, if the mesh has a plane. */
+  rightPlane?: ((indices: Uint32Array) => Plane | undefined) | undefined;
 }
 
 /** The result of a session: the same object with more fields, because a copy takes longer than a small mesh. */
 export function resultOf<I extends IndexArray>(
   outcome: Awaited<ReturnType<Session['outcome']>>,
   layout: Layout<I>,
-  { threads = 1, alone, untangles, turned = 0, welded, constrained }: Context,
+  { threads = 1, alone, untangles, rightPlane, turned = 0, welded, constrained }: Context,
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
   const isOnCpu = outcome.backend === 'cpu';
@@ -28,7 +30,12 @@ export function resultOf<I extends IndexArray>(
   return Object.assign(outcome, {
     indices: layout.give(indices),
     threads: isOnCpu ? threads : 0,
-    hint: hintOf(outcome, indices, layout, welded && seamEdges, untangles, isOnCpu ? alone : undefined),
+    hint: hintOf(outcome, indices, layout, {
+      seams: welded && seamEdges,
+      untangles,
+      rightPlane,
+      alone: isOnCpu ? alone : undefined,
+    }),
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,

@@ -5,7 +5,7 @@ import type { GpuBuffer, GpuDevice } from './types.js';
 /** The device of a session, and its buffers there. */
 export interface SessionBuffers {
   device: GpuDevice;
-  /** 2 or 3 f32 per vertex. */
+  /** 2 or 3 f32 per vertex; 3 if the mesh has a plane. */
   positions: GpuBuffer;
   /** 3 u32 per triangle. */
   indices: GpuBuffer;

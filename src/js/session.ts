@@ -9,9 +9,10 @@ import { EdgeflipError, fromModule } from './error.js';
 import type { Preparation } from './prepare.js';
 import { loadAudit } from './load.js';
 import { readDeviceMesh } from './device-mesh.js';
-import { gather } from './gather.js';
+import { copyTo } from './gather.js';
 import { copyOf, itselfOf } from './given.js';
-import { copied, floatsOf, type Layout, readMesh } from './mesh.js';
+import type { Heights } from './heights.js';
+import { checkPlan, copied, type Layout, planOfAll, readMesh, spaceOf } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
 import type { SessionBuffers } from './session-buffers.js';
@@ -77,6 +78,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   readonly #layout: Layout<I>;
   readonly #alone: string | undefined;
   readonly #prepared: Preparation;
+  /** The heights, if the mesh has a plane. */
+  readonly #heights: Heights | undefined;
   /** Whether triangles that have turned over become positive: always, never, or once the vertices have moved. */
   #untangles: boolean | undefined;
 
@@ -84,9 +87,11 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     { session, alone }: Opened,
     layout: Layout<I>,
     untangles: boolean | undefined,
+    heights: Heights | undefined,
     prepared: Preparation = {},
   ) {
     this.#session = session;
+    this.#heights = heights;
     this.#untangles = untangles;
     this.#alone = alone;
     this.#layout = layout;
@@ -130,12 +135,17 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     const chosen = settingsOf(options, known);
     try {
       // Without these options, their modules are not loaded.
-      const isPrepared = chosen.reorient || chosen.weld || chosen.constraints || chosen.untangle;
-      if (!isPrepared) return new FlipSession(await open(views, chosen, settles), layout, chosen.untangle);
+      const { untangle, reorient, weld, constraints } = chosen;
+      const isPrepared = reorient || weld || constraints || untangle;
+      const { space } = views;
+      if (!isPrepared && !space)
+        return new FlipSession(await open(views, chosen, settles), layout, untangle, undefined);
       const copy = copied(views);
+      const heights = space && new (await import('./heights.js')).Heights(layout.plane!, copy.space!);
+      if (!isPrepared) return new FlipSession(await open(copy, chosen, settles), layout, untangle, heights);
       const { prepare } = await import('./prepare.js');
       const { indices, settings, ...prepared } = await prepare(copy, chosen);
-      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, chosen.untangle, prepared);
+      return new FlipSession(await open({ ...copy, indices }, settings, settles), layout, untangle, heights, prepared);
     } catch (thrown) {
       throw fromModule(thrown);
     }
@@ -203,9 +213,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * `backend-limit`, `load-failed`.
    */
   async setPositions(positions: Mesh['positions']): Promise<void> {
-    const moved = floatsOf(positions, this.#layout, copyOf);
+    const { plane, vertices } = this.#layout;
+    const moved = spaceOf(positions, this.#layout, copyOf);
+    const plan = plane ? planOfAll(moved, plane, vertices) : moved;
+    if (plane) checkPlan(plan, plane);
     return this.#call(async (session) => {
-      await session.setPositions(moved);
+      await session.setPositions(plan);
+      this.#heights?.move(moved);
       this.#moved();
     });
   }
@@ -266,15 +280,20 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
     this.#moved();
+    const { gpu } = session;
+    const { dimension, vertices, plane } = this.#layout;
     if (buffer) {
-      const { gpu } = session;
       if (!gpu) {
         const message = `option buffer: the session is on ${session.backend}, not on a device that has buffers`;
         throw new EdgeflipError('invalid-option', message);
       }
-      gather(gpu.device, buffer, gpu.positions, this.#layout);
-    }
-    return session.update(positions, iterations);
+      if (this.#heights) this.#heights.moveFrom(buffer, gpu);
+      else copyTo(gpu.device, buffer, gpu.positions, [0, 1, 2].slice(0, dimension), vertices);
+    } else if (this.#heights && !positions && gpu) this.#heights.moveHere(gpu);
+    const plan = positions && plane ? planOfAll(positions, plane, vertices) : positions;
+    const updated = session.update(plan, iterations);
+    if (positions) this.#heights?.move(positions);
+    return updated;
   }
 
   /**
@@ -330,6 +349,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
         alone: this.#alone,
         threads: session.threads,
         untangles: this.#untangles,
+        rightPlane: this.#heights && ((indices: Uint32Array) => this.#heights?.rightPlane(indices)),
       };
       session.stays = stay;
       return resultOf(await session.outcome(), this.#layout, context);
@@ -398,7 +418,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /**
    * The device and the buffers on the GPU, to draw without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32
-   * per vertex (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
+   * per vertex, with a plane 3 (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
    * INDEX, COPY_SRC and COPY_DST. Write only `positions`, for {@link update}, and use the buffers only until `free`;
    * {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the
    * GPU fails or cannot accept new positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
@@ -407,7 +427,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * The usage of these buffers includes STORAGE and COPY_SRC. Only read them.
    */
   gpu(): Promise<SessionBuffers | undefined> {
-    return this.#call(async ({ gpu }) => gpu);
+    return this.#call(async ({ gpu }) => gpu && (this.#heights?.withHeights(gpu) ?? gpu));
   }
 
   /** Frees memory and buffers after the present call. Waiting calls fail with `freed`. */
@@ -415,6 +435,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     if (this.#isFreed) return;
     this.#isFreed = true;
     void this.#last.then(() => this.#prepared.welded?.free());
+    void this.#last.then(() => this.#heights?.free());
     // After a crash, the session may still be borrowed by the call, and cannot be freed.
     void this.#last.then(() => this.#session.free()).catch(() => undefined);
   }

@@ -1,6 +1,6 @@
 /** Measures how far flips shift the attributes of a surface, such as texture coordinates. */
 
-import type { IndexedMesh } from './mesh.js';
+import { type Floats, inSpace, type ReadMesh } from './mesh.js';
 import { Edges, next, NONE, placesOf } from './joined.js';
 import { sequence } from './surface.js';
 
@@ -16,6 +16,13 @@ export interface Limit {
 
 /** How vertices at the same position are joined: not at all, those with equal attributes, or all. */
 export type Joining = 'none' | 'equal' | 'all';
+
+/** Points in the plane as points of the height 0. */
+function raised(plan: Floats): Float64Array {
+  const points = new Float64Array((plan.length / 2) * 3);
+  for (let i = 0; 2 * i < plan.length; i++) points.set([plan[2 * i]!, plan[2 * i + 1]!], 3 * i);
+  return points;
+}
 
 /** The tangent of the angle from the normal to the camera: 27 degrees. */
 const BESIDE = 1 / 2;
@@ -42,9 +49,10 @@ export class Attributes {
   readonly #locked = new Set<number>();
 
   /** Locks the edges whose flip would shift an attribute too far. The arrays must not change afterwards. */
-  constructor({ positions, indices }: IndexedMesh, limits: readonly Limit[], joining: Joining) {
+  constructor(mesh: ReadMesh, limits: readonly Limit[], joining: Joining) {
+    const { positions, indices } = inSpace(mesh);
     const vertices = positions.length / 3;
-    this.#points = { values: new Float64Array(positions), width: 3 };
+    this.#points = { values: mesh.space ? raised(mesh.positions) : new Float64Array(positions), width: 3 };
     this.#indices = indices;
     this.#limits = limits;
     this.#places = joining === 'none' ? sequence(0, vertices) : placesOf(positions);

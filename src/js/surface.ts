@@ -1,6 +1,6 @@
 /** Runs on surfaces in the arrays of other libraries, for `three.ts` and `gltf-transform.ts`. */
 
-import type { MakeDelaunayOptions, Mesh, VertexArray } from './types.js';
+import type { MakeDelaunayOptions, Mesh, Plane, VertexArray } from './types.js';
 
 /** Numbers of vertices: those of vertex `i` are `array[i * stride + offset]` and the following, `width` in all. */
 export interface Columns {
@@ -17,7 +17,7 @@ interface Float16 extends Omit<Uint16Array, typeof Symbol.toStringTag> {
   readonly [Symbol.toStringTag]: string;
 }
 
-/** A surface in space. */
+/** A surface in space, or a terrain. */
 export interface Surface {
   /** The number of vertices. */
   vertices: number;
@@ -30,15 +30,20 @@ export interface Surface {
 }
 
 /**
- * The mesh and the options for `makeDelaunay`. `weld` compares all attributes by default, and `maxDeviation` is in the
+ * The mesh and the options for `makeDelaunay`. `plane` is that of a terrain. `weld` compares all attributes by default, and `maxDeviation` is in the
  * units that normalized positions stand for.
  */
-export function meshOf(surface: Surface, options: MakeDelaunayOptions): [Mesh<Uint32Array>, MakeDelaunayOptions] {
+export function meshOf(
+  surface: Surface,
+  plane: Plane | undefined,
+  options: MakeDelaunayOptions,
+): [Mesh<Uint32Array>, MakeDelaunayOptions] {
   const { vertices, positions, attributes } = surface;
   const { weld = attributes.map((columns) => comparable(columns, vertices)), maxDeviation } = options;
   const units = typeof maxDeviation === 'number' ? { maxDeviation: maxDeviation * unitOf(positions) } : {};
   const points = pointsOf(positions, vertices);
-  const mesh = { positions: points, indices: cornersOf(surface), dimension: 3 as const, stride: 3 };
+  const dimension = plane === undefined ? 3 : 2;
+  const mesh: Mesh<Uint32Array> = { positions: points, indices: cornersOf(surface), dimension, plane, stride: 3 };
   return [mesh, { ...options, ...units, weld }];
 }
 

@@ -16,7 +16,14 @@ import { inRange, type Range, rangeOf } from './draw-range.js';
 import { EdgeflipError } from './error.js';
 import { objectOf, read, shown } from './given.js';
 import { makeDelaunay } from './index.js';
-import { type Limited, limitsOf, runWithin, type ShiftOptions, type ShiftResult } from './limited.js';
+import {
+  type Limited,
+  limitsOf,
+  runWithin,
+  type ShiftOptions,
+  type ShiftResult,
+  type TerrainOptions,
+} from './limited.js';
 import { flipShared, type OnGpu, type Renderer, rendererOf, type Run } from './renderer.js';
 import type { FlipSession } from './session.js';
 import type { Limit } from './shift.js';
@@ -24,7 +31,7 @@ import { type Columns, meshOf, sequence, type Surface } from './surface.js';
 import type { MakeDelaunayOptions, Result } from './types.js';
 
 export { EdgeflipError, type ErrorCode } from './error.js';
-export type { ShiftOptions, ShiftResult } from './limited.js';
+export type { ShiftOptions, ShiftResult, TerrainOptions } from './limited.js';
 export type { Renderer } from './renderer.js';
 
 /**
@@ -35,9 +42,7 @@ export type { Renderer } from './renderer.js';
  * Two options have other defaults. `weld` joins vertices at the same position and compares all their attributes, also
  * those of morph targets; `false` joins no vertices. `groups` are the groups of the geometry.
  */
-export interface GeometryOptions
-  extends Omit<MakeDelaunayOptions, 'constraints' | 'skipConstraints' | 'untangle'>,
-    ShiftOptions {
+export interface GeometryOptions extends MakeDelaunayOptions, TerrainOptions, ShiftOptions {
   /** Whether to leave the geometry as it is and change a clone of it. Default: `false`. */
   copy?: boolean | undefined;
   /**
@@ -91,7 +96,7 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   geometry: G,
   options: GeometryOptions = {},
 ): Promise<GeometryResult<G>> {
-  const { target, surface, range, settings, limited, isInPlace, renderer } = read('the geometry', () =>
+  const { target, surface, range, plane, settings, limited, isInPlace, renderer } = read('the geometry', () =>
     opened(geometry, options),
   );
   const { index } = target;
@@ -102,7 +107,7 @@ export async function delaunayGeometry<G extends BufferGeometry>(
     ...shifts
   } = await runWithin(
     limited,
-    ...meshOf(surface, settings),
+    ...meshOf(surface, plane, settings),
     async (mesh, options): Promise<Run> =>
       renderer ? flipShared(renderer, mesh, options) : { result: await makeDelaunay(mesh, options) },
   );
@@ -114,7 +119,8 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   if (onGpu) draw(target, onGpu);
   else {
     release(target);
-    if (result.flips + result.turnedTriangles > 0) write(target, indices, range, surface.vertices, isInPlace);
+    if (result.flips + result.turnedTriangles + result.constraintFlips > 0)
+      write(target, indices, range, surface.vertices, isInPlace);
   }
   return { geometry: target, session: onGpu?.session, ...result, ...shifts };
 }
@@ -156,6 +162,7 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
     inPlace = false,
     renderer: drawing,
     maxAttributeShift,
+    plane,
     ...given
   } = objectOf(options, 'options') as GeometryOptions;
   const renderer = rendererOf(drawing);
@@ -182,13 +189,14 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
   const groups = given.groups ?? groupsOf(target, corners);
   const settings = inRange({ ...given, groups, ...(isShared && { weld: false }) }, range, whole);
   const limited: Limited = {
-    limits: shiftLimits(target, maxAttributeShift, given.weld),
+    limits: shiftLimits(target, maxAttributeShift, given.weld === true || given.constraints !== undefined),
     joining: settings.weld === false ? 'none' : isCompared ? 'equal' : 'all',
   };
   return {
     target,
     surface,
     range,
+    plane,
     settings,
     limited,
     isInPlace: inPlace || copy,
@@ -200,13 +208,13 @@ function opened<G extends BufferGeometry>(geometry: G, options: GeometryOptions)
 const TEXTURE = /^uv\d?$/;
 
 /** The attributes whose shift is limited. */
-function shiftLimits({ attributes }: BufferGeometry, given: unknown, weld: unknown): Limit[] {
+function shiftLimits({ attributes }: BufferGeometry, given: unknown, isOff: boolean): Limit[] {
   const all = Object.entries(attributes as Record<string, Attribute>).filter(
     ([name, attribute]) =>
       name !== 'position' && !('isGLBufferAttribute' in attribute) && columnsOf(name, attribute) !== undefined,
   );
   const names = all.map(([name]) => name);
-  const most = limitsOf(given, names, (name) => TEXTURE.test(name), weld);
+  const most = limitsOf(given, names, (name) => TEXTURE.test(name), isOff);
   return all.flatMap(([name, attribute]) => {
     if (!most.has(name)) return [];
     checkCount(name, attribute, attributes['position']!);

@@ -42,6 +42,9 @@ export type Indices<I extends IndexArray> = I extends Uint32Array
               ? Int8Array
               : number[];
 
+/** The plane of a terrain: the two coordinates that decide. */
+export type Plane = 'xy' | 'xz' | 'yz';
+
 /** A triangle mesh. A call copies its arrays before it returns. */
 export interface Mesh<I extends IndexArray = IndexArray> {
   /**
@@ -55,7 +58,15 @@ export interface Mesh<I extends IndexArray = IndexArray> {
   indices: I;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
   dimension: 2 | 3;
-  /** The count of numbers in `positions` from a vertex to the next, as in interleaved arrays. Default: `dimension`. */
+  /**
+   * For a terrain, with `dimension: 2`: the two of three coordinates per vertex that decide. The third, the height, counts
+   * for nothing: it may be any number. `'xy'` where z is up, as in maps; `'xz'` where y is up, as in three.js and glTF.
+   */
+  plane?: Plane | undefined;
+  /**
+   * The count of numbers in `positions` from a vertex to the next, as in interleaved arrays. Default: `dimension`, with
+   * `plane` 3.
+   */
   stride?: number | undefined;
   /** The count of numbers in `positions` before the first vertex. Default: 0. */
   offset?: number | undefined;
@@ -69,6 +80,8 @@ export interface DeviceMesh {
   indices: GpuBuffer;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
   dimension: 2 | 3;
+  /** As {@link Mesh.plane}. */
+  plane?: Plane | undefined;
   /** As {@link Mesh.stride}. */
   stride?: number | undefined;
   /** As {@link Mesh.offset}. */
@@ -141,8 +154,7 @@ export interface Options {
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
    * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
-   * one, a locked edge or the boundary is an error that names both. For a terrain, give `dimension: 2, stride: 3`: the
-   * heights then do not count. Loads the module of `edgeflip/files`.
+   * one, a locked edge or the boundary is an error that names both. A terrain needs a {@link Mesh.plane}. Loads the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
   /** Leaves out the constraints that cannot be brought in, and lists them as `leftOut`. Default: they are errors. */

@@ -3,7 +3,7 @@
 import { EdgeflipError } from './error.js';
 import { type Source, sourceOf } from './gather.js';
 import { isWhole, read, shown } from './given.js';
-import { type AllPlaces, floatsOf } from './mesh.js';
+import { type AllPlaces, type Floats, spaceOf } from './mesh.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Hold, MOST_ITERATIONS } from './settings.js';
 import type { UpdateOptions } from './types.js';
@@ -13,7 +13,8 @@ export type WorkerUpdateOptions = Pick<UpdateOptions, 'positions' | 'iterations'
 
 /** The options of an update, read. */
 export interface Update {
-  positions: Float32Array | Float64Array | undefined;
+  /** All coordinates, with those that a plane leaves out. */
+  positions: Floats | undefined;
   buffer: Source | undefined;
   iterations: number;
 }
@@ -55,7 +56,7 @@ export function updateOf(
       throw new EdgeflipError('invalid-option', 'options positions and buffer: give only one of them');
     }
     return {
-      positions: positions === undefined ? undefined : floatsOf(positions, layout, hold),
+      positions: positions === undefined ? undefined : spaceOf(positions, layout, hold),
       buffer: buffer === undefined ? undefined : sourceOf(given, layout),
       iterations,
     };

@@ -19,7 +19,7 @@ import { buffersOf } from './buffers.js';
 import { dispose } from './dispose.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { copyOf, messageOf, read } from './given.js';
-import { floatsOf, type Layout, readMesh } from './mesh.js';
+import { type Layout, readMesh, spaceOf, widthOf } from './mesh.js';
 import { type ModuleSource, type Sources, sourcesOf } from './module.js';
 import { namesOf } from './names.js';
 import { Remote } from './remote.js';
@@ -172,8 +172,9 @@ export async function makeDelaunay<I extends IndexArray>(
 
 /** A copy of the mesh. It has a stride if the mesh has one, because the worker gives advice about a forgotten one. */
 function messageOfMesh<I extends IndexArray>(mesh: Mesh<I>): [Mesh<Uint32Array>, Layout<I>] {
-  const [views, layout] = readMesh(mesh, copyOf);
-  return [layout.hasStride ? { ...views, stride: layout.dimension } : views, layout];
+  const [{ positions, indices, dimension, space = positions }, layout] = readMesh(mesh, copyOf);
+  const stride = layout.hasStride ? { stride: widthOf(layout) } : {};
+  return [{ positions: space, indices, dimension, plane: layout.plane, ...stride }, layout];
 }
 
 /** What the worker needs to know of the callbacks and the signal. */
@@ -245,7 +246,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * `backend-limit`.
    */
   async setPositions(positions: Mesh['positions']): Promise<void> {
-    await this.#ask('setPositions', floatsOf(positions, this.#layout, copyOf));
+    await this.#ask('setPositions', spaceOf(positions, this.#layout, copyOf));
   }
 
   /**
@@ -258,7 +259,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     this.#checkFreed();
     const { positions, iterations } = updateOf(options, this.#layout, copyOf, WORKER_UPDATE_OPTIONS);
     this.#check();
-    const expected = this.#layout.vertices * this.#layout.dimension;
+    const expected = this.#layout.vertices * widthOf(this.#layout);
     if (positions && positions.length !== expected) {
       const message = `positions has ${positions.length} numbers, but the vertices of the mesh take ${expected}`;
       throw new EdgeflipError('position-count', message);

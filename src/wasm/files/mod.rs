@@ -10,7 +10,7 @@ use crate::io::{self, Coordinates, Format, Loaded, ReadOptions};
 use crate::system::memory;
 use crate::system::threads::Threads;
 use crate::wasm::values::{JsPositions, dimension_of, mesh_of, object, thrown};
-use crate::{Error, Mesh, Options, Positions, families, quality, reoriented};
+use crate::{Error, Mesh, Options, Plane, Positions, families, quality, reoriented};
 use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint32Array};
 use std::path::Path;
 use wasm_bindgen::prelude::*;
@@ -21,8 +21,10 @@ const MAX_BINS: u32 = 1 << 16;
 #[wasm_bindgen]
 extern "C" {
     /// A file. `files` is an object with the bytes of other files by their names; `maxBytes`, `coordinates`, 32 or 64,
-    /// and `ignoreAttributes` are as in [`ReadOptions`].
-    #[wasm_bindgen(typescript_type = "Required<import('../original.js').Original>")]
+    /// `ignoreAttributes` and `plane`, a name, are as in [`ReadOptions`].
+    #[wasm_bindgen(
+        typescript_type = "Required<import('../original.js').Original> & { plane?: import('../types.js').Plane | undefined }"
+    )]
     pub type JsFile;
 
     #[wasm_bindgen(method, getter)]
@@ -37,6 +39,8 @@ extern "C" {
     fn coordinates(this: &JsFile) -> Option<u32>;
     #[wasm_bindgen(method, getter, js_name = ignoreAttributes)]
     fn ignore_attributes(this: &JsFile) -> Vec<String>;
+    #[wasm_bindgen(method, getter)]
+    fn plane(this: &JsFile) -> Option<String>;
 }
 
 /// Reads the mesh of a file; `dimension` is as in [`ReadOptions`].
@@ -103,6 +107,8 @@ fn load(file: &JsFile, dimension: Option<u32>) -> Result<Loaded, Error> {
     let (format, bytes, files) = (Format::of(Path::new(&file.name()))?, file.bytes(), file.files());
     let mut options = ReadOptions::default();
     options.dimension = dimension.map(dimension_of);
+    let named = file.plane();
+    options.plane = Plane::ALL.into_iter().find(|plane| named.as_deref() == Some(plane.name()));
     options.coordinates =
         file.coordinates().map(|bits| if bits == 32 { Coordinates::F32 } else { Coordinates::F64 });
     options.ignore_attributes = file.ignore_attributes();

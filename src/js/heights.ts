@@ -1,0 +1,94 @@
+/** The heights of a session whose mesh has a plane: the engines know the other two coordinates only. */
+
+import { copyTo, type Source } from './gather.js';
+import { AXES, type Floats } from './mesh.js';
+import type { SessionBuffers } from './session-buffers.js';
+import type { GpuBuffer, GpuDevice, Plane } from './types.js';
+
+const SPACE = [0, 1, 2];
+
+/** More than what rounding does to the difference of two products, for its sign. */
+const ROUNDING = 2 ** -50;
+
+/** All coordinates of the vertices, and a buffer with them on the device of the session once the page has asked for it. */
+export class Heights {
+  readonly #plane: Plane;
+  #positions: Floats;
+  #buffer: GpuBuffer | undefined;
+  #device: GpuDevice | undefined;
+
+  /** Keeps the array. */
+  constructor(plane: Plane, positions: Floats) {
+    this.#plane = plane;
+    this.#positions = positions;
+  }
+
+  /**
+   * The first plane in which all triangles that are not flat have one orientation, as `Mesh::terrain_plane` of the crate,
+   * at the last positions that the page gave in an array. What is flat up to rounding counts as flat.
+   */
+  rightPlane(indices: Uint32Array): Plane | undefined {
+    return (Object.keys(AXES) as Plane[]).find((plane) => this.#isTerrain(plane, indices));
+  }
+
+  #isTerrain(plane: Plane, indices: Uint32Array): boolean {
+    const numbers = this.#positions;
+    const [u, v] = AXES[plane] as [number, number];
+    let first = 0;
+    for (let i = 0; i < indices.length; i += 3) {
+      const [a, b, c] = [3 * indices[i]!, 3 * indices[i + 1]!, 3 * indices[i + 2]!];
+      const left = (numbers[b + u]! - numbers[a + u]!) * (numbers[c + v]! - numbers[a + v]!);
+      const right = (numbers[c + u]! - numbers[a + u]!) * (numbers[b + v]! - numbers[a + v]!);
+      if (Math.abs(left - right) <= ROUNDING * (Math.abs(left) + Math.abs(right))) continue;
+      const sign = Math.sign(left - right);
+      if (sign === -first) return false;
+      first = sign;
+    }
+    return first !== 0;
+  }
+
+  /** The buffers of the session, with all coordinates as its positions. */
+  withHeights(gpu: SessionBuffers): SessionBuffers {
+    if (this.#device !== gpu.device) {
+      this.free();
+      const usage = GPUBufferUsage.STORAGE | GPUBufferUsage.VERTEX | GPUBufferUsage.COPY_SRC | GPUBufferUsage.COPY_DST;
+      const size = Math.max(4, 4 * this.#positions.length);
+      this.#device = gpu.device;
+      this.#buffer = gpu.device.createBuffer({ label: 'edgeflip positions with heights', size, usage });
+      this.#write();
+    }
+    return { ...gpu, positions: this.#buffer! };
+  }
+
+  /** Copies positions. */
+  move(positions: Floats): void {
+    if (positions.constructor === this.#positions.constructor) this.#positions.set(positions);
+    else this.#positions = positions.slice();
+    this.#write();
+  }
+
+  /** Copies positions from a buffer of the page, and their plan to the buffer of the engine. */
+  moveFrom(source: Source, gpu: SessionBuffers): void {
+    const vertices = this.#positions.length / 3;
+    if (this.#buffer && this.#device === gpu.device) copyTo(gpu.device, source, this.#buffer, SPACE, vertices);
+    copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], vertices);
+  }
+
+  /** Gives the engine the plan of what the page has written to the buffer. */
+  moveHere(gpu: SessionBuffers): void {
+    if (!this.#buffer || this.#device !== gpu.device) return;
+    const source = { buffer: this.#buffer, offset: 0, stride: 3 };
+    copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], this.#positions.length / 3);
+  }
+
+  free(): void {
+    this.#buffer?.destroy();
+    this.#buffer = undefined;
+    this.#device = undefined;
+  }
+
+  /** Rounds doubles, as the engine does. */
+  #write(): void {
+    if (this.#buffer) this.#device?.queue.writeBuffer(this.#buffer, 0, Float32Array.from(this.#positions));
+  }
+}
