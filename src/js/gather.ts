@@ -24,7 +24,7 @@ const SHADER = `
   @compute @workgroup_size(256)
   fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     for (var i = id.x; i < places.numbers; i += groups.x * 256u) {
-      let axis = places.axes >> (2u * (i % places.width)) & 3u;
+      let axis = (places.axes >> (2u * (i % places.width))) & 3u;
       positions[i] = source[places.offset + i / places.width * places.stride + axis];
     }
   }`;

@@ -17,34 +17,16 @@ export class Heights {
   #buffer: GpuBuffer | undefined;
   #device: GpuDevice | undefined;
 
-  /** Keeps the array. */
-  constructor(plane: Plane, positions: Floats) {
+  /** The plane in which no triangle of the input is turned over, if it is another one. */
+  readonly rightPlane: Plane | undefined;
+
+  /** Keeps the positions. */
+  constructor(plane: Plane, positions: Floats, indices: Uint32Array) {
     this.#plane = plane;
     this.#positions = positions;
-  }
-
-  /**
-   * The first plane in which all triangles that are not flat have one orientation, as `Mesh::terrain_plane` of the crate,
-   * at the last positions that the page gave in an array. What is flat up to rounding counts as flat.
-   */
-  rightPlane(indices: Uint32Array): Plane | undefined {
-    return (Object.keys(AXES) as Plane[]).find((plane) => this.#isTerrain(plane, indices));
-  }
-
-  #isTerrain(plane: Plane, indices: Uint32Array): boolean {
-    const numbers = this.#positions;
-    const [u, v] = AXES[plane] as [number, number];
-    let first = 0;
-    for (let i = 0; i < indices.length; i += 3) {
-      const [a, b, c] = [3 * indices[i]!, 3 * indices[i + 1]!, 3 * indices[i + 2]!];
-      const left = (numbers[b + u]! - numbers[a + u]!) * (numbers[c + v]! - numbers[a + v]!);
-      const right = (numbers[c + u]! - numbers[a + u]!) * (numbers[b + v]! - numbers[a + v]!);
-      if (Math.abs(left - right) <= ROUNDING * (Math.abs(left) + Math.abs(right))) continue;
-      const sign = Math.sign(left - right);
-      if (sign === -first) return false;
-      first = sign;
-    }
-    return first !== 0;
+    const planes = [plane, ...(Object.keys(AXES) as Plane[])];
+    const right = planes.find((plane) => isTerrain(plane, positions, indices));
+    this.rightPlane = right === plane ? undefined : right;
   }
 
   /** The buffers of the session, with all coordinates as its positions. */
@@ -91,4 +73,23 @@ export class Heights {
   #write(): void {
     if (this.#buffer) this.#device?.queue.writeBuffer(this.#buffer, 0, Float32Array.from(this.#positions));
   }
+}
+
+/**
+ * Whether all triangles that are not flat from above have one orientation, as `Mesh::terrain_plane` of the crate. What is
+ * flat up to rounding counts as flat.
+ */
+function isTerrain(plane: Plane, numbers: Floats, indices: Uint32Array): boolean {
+  const [u, v] = AXES[plane] as [number, number];
+  let first = 0;
+  for (let i = 0; i < indices.length; i += 3) {
+    const [a, b, c] = [3 * indices[i]!, 3 * indices[i + 1]!, 3 * indices[i + 2]!];
+    const left = (numbers[b + u]! - numbers[a + u]!) * (numbers[c + v]! - numbers[a + v]!);
+    const right = (numbers[c + u]! - numbers[a + u]!) * (numbers[b + v]! - numbers[a + v]!);
+    if (Math.abs(left - right) <= ROUNDING * (Math.abs(left) + Math.abs(right))) continue;
+    const sign = Math.sign(left - right);
+    if (sign === -first) return false;
+    first = sign;
+  }
+  return first !== 0;
 }

@@ -17,8 +17,8 @@ interface Circumstances {
   seams: number | undefined;
   /** Whether triangles that had turned over have become positive, where that was possible. */
   untangles: boolean | undefined;
-  /** Finds the plane in which no triangle is turned over, if the mesh has a plane. */
-  rightPlane: ((indices: Uint32Array) => Plane | undefined) | undefined;
+  /** The plane in which no triangle is turned over, if it is another one than the mesh has. */
+  rightPlane: Plane | undefined;
   /** Why the CPU engine has one thread, if it could use more. */
   alone: string | undefined;
 }
@@ -59,8 +59,7 @@ export function hintOf(
       ? 'no triangulation of these positions was found: problems says why, or another component has an edge that theirs would need'
       : 'no flip could turn them back; untangle: true does, where the positions have a triangulation';
     hints.push(`Triangles that are turned over: ${inverted}. They overlap their neighbours, and ${remedy}. ${LISTED}`);
-    const plane = rightPlane?.(indices);
-    if (plane) hints.push(`In the plane ${plane} no triangle is turned over: pass plane: '${plane}'.`);
+    if (rightPlane) hints.push(`In the plane ${rightPlane} no triangle is turned over: pass plane: '${rightPlane}'.`);
     else if (!layout.plane && layout.dimension === 2 && layout.stride === 3) {
       hints.push("If the mesh is a terrain and z is not up, pass plane: 'xz' or 'yz'.");
     }

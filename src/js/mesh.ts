@@ -147,8 +147,15 @@ export function spaceOf(given: Mesh['positions'], places: Places, hold: Hold): F
   return floatsOf(given, { ...places, dimension: widthOf(places) }, hold);
 }
 
-/** The two coordinates of a plane. */
+/**
+ * The two coordinates of a plane.
+ *
+ * @throws {@link EdgeflipError} `ragged-array`.
+ */
 function planOf(space: Floats, plane: Plane): Floats {
+  if (space.length % 3 > 0) {
+    throw new EdgeflipError('ragged-array', `positions has ${space.length} numbers, not a multiple of 3`);
+  }
   const [u, v] = AXES[plane] as [number, number];
   const plan = new (space.constructor as Float64ArrayConstructor)((space.length / 3) * 2);
   for (let to = 0, from = 0; to < plan.length; from += 3) {

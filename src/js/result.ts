@@ -14,8 +14,8 @@ export interface Context extends Preparation {
   alone?: string | undefined;
   /** Whether triangles that had turned over have become positive, where that was possible. */
   untangles?: boolean | undefined;
-  /** Finds the plane in which no triangle is turned over, if the mesh has a plane. */
-  rightPlane?: ((indices: Uint32Array) => Plane | undefined) | undefined;
+  /** The plane in which no triangle is turned over, if it is another one than the mesh has. */
+  rightPlane?: Plane | undefined;
 }
 
 /** The result of a session: the same object with more fields, because a copy takes longer than a small mesh. */

@@ -141,7 +141,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
       if (!isPrepared && !space)
         return new FlipSession(await open(views, chosen, settles), layout, untangle, undefined);
       const copy = copied(views);
-      const heights = space && new (await import('./heights.js')).Heights(layout.plane!, copy.space!);
+      const heights = space && new (await import('./heights.js')).Heights(layout.plane!, copy.space!, copy.indices);
       if (!isPrepared) return new FlipSession(await open(copy, chosen, settles), layout, untangle, heights);
       const { prepare } = await import('./prepare.js');
       const { indices, settings, ...prepared } = await prepare(copy, chosen);
@@ -349,7 +349,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
         alone: this.#alone,
         threads: session.threads,
         untangles: this.#untangles,
-        rightPlane: this.#heights && ((indices: Uint32Array) => this.#heights?.rightPlane(indices)),
+        rightPlane: this.#heights?.rightPlane,
       };
       session.stays = stay;
       return resultOf(await session.outcome(), this.#layout, context);
