@@ -61,16 +61,17 @@ export function sourceOf(options: UpdateOptions, places: AllPlaces): Source {
 }
 
 /**
- * Submits the copy of these numbers of each vertex. Errors are those of the device: a buffer of another device, or
+ * Submits the copy of these numbers of each vertex, or of so many. Errors are those of the device: a buffer of another device, or
  * without the usage.
  */
 export function copyTo(
   device: GpuDevice,
   { buffer, offset, stride }: Source,
   positions: GpuBuffer,
-  axes: readonly number[],
+  numbersOfVertex: readonly number[] | 2 | 3,
   vertices: number,
 ): void {
+  const axes = typeof numbersOfVertex === 'number' ? [0, 1, 2].slice(0, numbersOfVertex) : numbersOfVertex;
   const width = axes.length;
   const numbers = vertices * width;
   if (numbers === 0) return;

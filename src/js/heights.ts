@@ -1,11 +1,9 @@
 /** The heights of a session whose mesh has a plane: the engines know the other two coordinates only. */
 
 import { copyTo, type Source } from './gather.js';
-import { AXES, type Floats } from './mesh.js';
+import { AXES, type Floats, type Plane } from './plane.js';
 import type { SessionBuffers } from './session-buffers.js';
-import type { GpuBuffer, GpuDevice, Plane } from './types.js';
-
-const SPACE = [0, 1, 2];
+import type { GpuBuffer, GpuDevice } from './types.js';
 
 /** More than what rounding does to the difference of two products, for its sign. */
 const ROUNDING = 2 ** -50;
@@ -49,18 +47,16 @@ export class Heights {
     this.#write();
   }
 
-  /** Copies positions from a buffer of the page, and their plan to the buffer of the engine. */
-  moveFrom(source: Source, gpu: SessionBuffers): void {
+  /**
+   * Gives the engine the plan of positions on its device: of those in a buffer of the page, or those that the page has
+   * written to ours.
+   */
+  moveOn(gpu: SessionBuffers, given: Source | undefined): void {
     const vertices = this.#positions.length / 3;
-    if (this.#buffer && this.#device === gpu.device) copyTo(gpu.device, source, this.#buffer, SPACE, vertices);
-    copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], vertices);
-  }
-
-  /** Gives the engine the plan of what the page has written to the buffer. */
-  moveHere(gpu: SessionBuffers): void {
-    if (!this.#buffer || this.#device !== gpu.device) return;
-    const source = { buffer: this.#buffer, offset: 0, stride: 3 };
-    copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], this.#positions.length / 3);
+    const own = this.#device === gpu.device ? this.#buffer : undefined;
+    const source = given ?? (own && { buffer: own, offset: 0, stride: 3 });
+    if (given && own) copyTo(gpu.device, given, own, 3, vertices);
+    if (source) copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], vertices);
   }
 
   free(): void {

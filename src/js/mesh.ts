@@ -16,7 +16,8 @@ import {
 } from './given.js';
 import { checkSpelling, namesOf } from './names.js';
 import type { Hold } from './settings.js';
-import type { IndexArray, Indices, Mesh, Plane } from './types.js';
+import { AXES, checkPlan, type Floats, planOf, type Plane } from './plane.js';
+import type { IndexArray, Indices, Mesh } from './types.js';
 
 /** The names of the fields of a mesh. */
 export const MESH = namesOf<Mesh>({
@@ -27,12 +28,6 @@ export const MESH = namesOf<Mesh>({
   stride: true,
   offset: true,
 });
-
-/**
- * The axes of each plane, in the order in which a triangle that is counter-clockwise from above is positive, as in
- * `src/mesh/plane.rs`.
- */
-export const AXES: Readonly<Record<Plane, readonly number[]>> = { xy: [0, 1], xz: [2, 0], yz: [1, 2] };
 
 /** A mesh with 32-bit indices whose positions are floats without gaps, as the modules take and return it. */
 export interface IndexedMesh extends Mesh<Uint32Array> {
@@ -55,9 +50,6 @@ export interface ReadMesh extends IndexedMesh {
   /** All three coordinates of the vertices, if the mesh has a plane. `positions` has the two of the plane. */
   space?: Floats | undefined;
 }
-
-/** Positions as the modules take them. */
-export type Floats = Float32Array | Float64Array;
 
 /** Where the positions of a mesh are in its array. */
 interface Places {
@@ -148,44 +140,19 @@ export function spaceOf(given: Mesh['positions'], places: Places, hold: Hold): F
 }
 
 /**
- * The two coordinates of a plane.
+ * The coordinates that decide, of all vertices of a mesh that has moved. `isChecked`: whether they have to be finite.
  *
- * @throws {@link EdgeflipError} `ragged-array`.
+ * @throws {@link EdgeflipError} `position-count`, `non-finite`.
  */
-function planOf(space: Floats, plane: Plane): Floats {
-  if (space.length % 3 > 0) {
-    throw new EdgeflipError('ragged-array', `positions has ${space.length} numbers, not a multiple of 3`);
+export function movedTo(space: Floats, { plane, vertices }: AllPlaces, isChecked: boolean): Floats {
+  if (!plane) return space;
+  if (space.length !== 3 * vertices) {
+    const message = `positions has ${space.length} numbers, but the vertices of the mesh take ${3 * vertices}`;
+    throw new EdgeflipError('position-count', message);
   }
-  const [u, v] = AXES[plane] as [number, number];
-  const plan = new (space.constructor as Float64ArrayConstructor)((space.length / 3) * 2);
-  for (let to = 0, from = 0; to < plan.length; from += 3) {
-    plan[to++] = space[from + u]!;
-    plan[to++] = space[from + v]!;
-  }
+  const plan = planOf(space, plane);
+  if (isChecked) checkPlan(plan, plane);
   return plan;
-}
-
-/**
- * The two coordinates of a plane, of all vertices of a mesh.
- *
- * @throws {@link EdgeflipError} `position-count`.
- */
-export function planOfAll(space: Floats, plane: Plane, vertices: number): Floats {
-  if (space.length === 3 * vertices) return planOf(space, plane);
-  const message = `positions has ${space.length} numbers, but the vertices of the mesh take ${3 * vertices}`;
-  throw new EdgeflipError('position-count', message);
-}
-
-/**
- * The modules would name other axes.
- *
- * @throws {@link EdgeflipError} `non-finite`.
- */
-export function checkPlan(plan: Floats, plane: Plane): void {
-  const at = plan.findIndex((x) => !Number.isFinite(x));
-  if (at < 0) return;
-  const axis = 'xyz'[AXES[plane][at % 2]!];
-  throw new EdgeflipError('non-finite', `vertex ${at >> 1}: coordinate ${axis} is ${plan[at]}, not a finite number`);
 }
 
 /**

@@ -9,10 +9,9 @@ import { EdgeflipError, fromModule } from './error.js';
 import type { Preparation } from './prepare.js';
 import { loadAudit } from './load.js';
 import { readDeviceMesh } from './device-mesh.js';
-import { copyTo } from './gather.js';
 import { copyOf, itselfOf } from './given.js';
 import type { Heights } from './heights.js';
-import { checkPlan, copied, type Layout, planOfAll, readMesh, spaceOf } from './mesh.js';
+import { copied, type Layout, movedTo, readMesh, spaceOf } from './mesh.js';
 import { open, type Opened } from './open.js';
 import { resultOf } from './result.js';
 import type { SessionBuffers } from './session-buffers.js';
@@ -36,7 +35,7 @@ import type {
   UpdateOptions,
 } from './types.js';
 import { call } from './untangle.js';
-import { type Update, updateOf } from './update.js';
+import { takeOnDevice, type Update, updateOf } from './update.js';
 
 /** As {@link FlipSession.create}, with the options of {@link makeDelaunay}. */
 export let createWatched: <I extends IndexArray>(
@@ -213,10 +212,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
    * `backend-limit`, `load-failed`.
    */
   async setPositions(positions: Mesh['positions']): Promise<void> {
-    const { plane, vertices } = this.#layout;
     const moved = spaceOf(positions, this.#layout, copyOf);
-    const plan = plane ? planOfAll(moved, plane, vertices) : moved;
-    if (plane) checkPlan(plan, plane);
+    const plan = movedTo(moved, this.#layout, true);
     return this.#call(async (session) => {
       await session.setPositions(plan);
       this.#heights?.move(moved);
@@ -280,18 +277,8 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #update(session: ModuleSession, { positions, buffer, iterations }: Update): void | Promise<void> {
     this.#moved();
-    const { gpu } = session;
-    const { dimension, vertices, plane } = this.#layout;
-    if (buffer) {
-      if (!gpu) {
-        const message = `option buffer: the session is on ${session.backend}, not on a device that has buffers`;
-        throw new EdgeflipError('invalid-option', message);
-      }
-      if (this.#heights) this.#heights.moveFrom(buffer, gpu);
-      else copyTo(gpu.device, buffer, gpu.positions, [0, 1, 2].slice(0, dimension), vertices);
-    } else if (this.#heights && !positions && gpu) this.#heights.moveHere(gpu);
-    const plan = positions && plane ? planOfAll(positions, plane, vertices) : positions;
-    const updated = session.update(plan, iterations);
+    if (!positions) takeOnDevice(session, buffer, this.#layout, this.#heights);
+    const updated = session.update(positions && movedTo(positions, this.#layout, false), iterations);
     if (positions) this.#heights?.move(positions);
     return updated;
   }
@@ -434,8 +421,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
   free(): void {
     if (this.#isFreed) return;
     this.#isFreed = true;
-    void this.#last.then(() => this.#prepared.welded?.free());
-    void this.#last.then(() => this.#heights?.free());
+    void this.#last.then(() => [this.#prepared.welded, this.#heights].forEach((held) => held?.free()));
     // After a crash, the session may still be borrowed by the call, and cannot be freed.
     void this.#last.then(() => this.#session.free()).catch(() => undefined);
   }

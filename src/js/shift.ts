@@ -1,6 +1,7 @@
 /** Measures how far flips shift the attributes of a surface, such as texture coordinates. */
 
-import { type Floats, inSpace, type ReadMesh } from './mesh.js';
+import { inSpace, type ReadMesh } from './mesh.js';
+import type { Floats } from './plane.js';
 import { Edges, next, NONE, placesOf } from './joined.js';
 import { sequence } from './surface.js';
 

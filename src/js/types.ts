@@ -1,9 +1,11 @@
 /** The types of the input, the options and the results. */
 
 import type { Original } from './original.js';
+import type { Plane } from './plane.js';
 
 export type { Edges } from './edges.js';
 export type { Files, Original } from './original.js';
+export type { Plane } from './plane.js';
 
 /** A `GPUDevice`, where the types of WebGPU are known. */
 export type GpuDevice = typeof globalThis extends { GPUDevice: { prototype: infer T } } ? T : unknown;
@@ -42,31 +44,21 @@ export type Indices<I extends IndexArray> = I extends Uint32Array
               ? Int8Array
               : number[];
 
-/** The plane of a terrain: the two coordinates that decide. */
-export type Plane = 'xy' | 'xz' | 'yz';
-
 /** A triangle mesh. A call copies its arrays before it returns. */
 export interface Mesh<I extends IndexArray = IndexArray> {
   /**
-   * 2 or 3 coordinates per vertex. Integers, as in quantized meshes, count as these numbers. Decisions are exact for
-   * the numbers in the array. The numbers of a plain array count as 32-bit floats if all of them are such, else as
-   * 64-bit floats. The CPU accepts all finite numbers. WebGPU and WebGL2 accept multiples of a power of two, at most 84
-   * bits and a sign relative to the centre of the bounding box.
+   * 2 or 3 coordinates per vertex, with a `plane` 3. Integers, as in quantized meshes, count as these numbers. Decisions
+   * are exact for the numbers in the array. A plain array counts as 32-bit floats if all its numbers are such. The CPU
+   * accepts all finite numbers, WebGPU and WebGL2 multiples of a power of two: 84 bits and a sign relative to the centre.
    */
   positions: VertexArray | readonly number[];
   /** Vertex indices, 3 per triangle. Results have indices of the same type. */
   indices: I;
   /** 2 for a mesh in the plane, 3 for a surface in space. */
   dimension: 2 | 3;
-  /**
-   * For a terrain, with `dimension: 2`: the two of three coordinates per vertex that decide. The third, the height, counts
-   * for nothing: it may be any number. `'xy'` where z is up, as in maps; `'xz'` where y is up, as in three.js and glTF.
-   */
+  /** For a terrain, which has the dimension 2 and 3 coordinates per vertex: those that decide. */
   plane?: Plane | undefined;
-  /**
-   * The count of numbers in `positions` from a vertex to the next, as in interleaved arrays. Default: `dimension`, with
-   * `plane` 3.
-   */
+  /** The count of numbers in `positions` from a vertex to the next. Default: `dimension`, or 3 with a `plane`. */
   stride?: number | undefined;
   /** The count of numbers in `positions` before the first vertex. Default: 0. */
   offset?: number | undefined;

@@ -1,11 +1,14 @@
 /** Reads the options of an update once: checks their types and copies them. */
 
 import { EdgeflipError } from './error.js';
-import { type Source, sourceOf } from './gather.js';
+import { copyTo, type Source, sourceOf } from './gather.js';
 import { isWhole, read, shown } from './given.js';
-import { type AllPlaces, type Floats, spaceOf } from './mesh.js';
+import type { Heights } from './heights.js';
+import { type AllPlaces, spaceOf } from './mesh.js';
+import type { Floats } from './plane.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Hold, MOST_ITERATIONS } from './settings.js';
+import type { ModuleSession } from './threads.js';
 import type { UpdateOptions } from './types.js';
 
 /** The options of an update without a buffer: in a worker, which none can enter, all. */
@@ -61,4 +64,24 @@ export function updateOf(
       iterations,
     };
   });
+}
+
+/**
+ * Gives the engine of a session the positions on its device that the page has written to a buffer.
+ *
+ * @throws {@link EdgeflipError} `invalid-option`.
+ */
+export function takeOnDevice(
+  { gpu, backend }: Pick<ModuleSession, 'gpu' | 'backend'>,
+  buffer: Source | undefined,
+  { dimension, vertices }: AllPlaces,
+  heights: Heights | undefined,
+): void {
+  if (buffer && !gpu) {
+    const message = `option buffer: the session is on ${backend}, not on a device that has buffers`;
+    throw new EdgeflipError('invalid-option', message);
+  }
+  if (!gpu) return;
+  if (heights) heights.moveOn(gpu, buffer);
+  else if (buffer) copyTo(gpu.device, buffer, gpu.positions, dimension, vertices);
 }
