@@ -19,12 +19,11 @@ import type { Hold } from './settings.js';
 import { AXES, checkPlan, type Floats, planOf, type Plane } from './plane.js';
 import type { IndexArray, Indices, Mesh } from './types.js';
 
-/** The names of the fields of a mesh. */
-export const MESH = namesOf<Mesh>({
+/** The names of the fields of a mesh that hold numbers. */
+export const MESH = namesOf<Omit<Mesh, 'plane'>>({
   positions: true,
   indices: true,
   dimension: true,
-  plane: true,
   stride: true,
   offset: true,
 });

@@ -44,27 +44,36 @@ test('a worker flips, and the page shows its progress', async () => {
   await page.close();
 });
 
-test('three.js draws a geometry that became Delaunay', async () => {
-  const { page, problems } = await open('three.html');
-  await page.waitForSelector('#flip:enabled');
-  const picture = () => page.locator('canvas').screenshot();
-  /** The first picture that differs, because the software GPU takes its time. */
-  const pictureAfter = async (old) => {
-    for (const start = performance.now(); performance.now() - start < 30_000; await page.waitForTimeout(200)) {
-      const now = await picture();
-      if (!now.equals(old)) return now;
-    }
-    return old;
-  };
-  await page.waitForTimeout(1000);
-  const before = await picture();
-  assert.deepEqual(await picture(), before);
-  await page.click('#flip');
-  assert.match(await stateOf(page, ' flips on '), /^\d{3,} flips on (cpu|webgpu)$/);
-  assert.notDeepEqual(await pictureAfter(before), before);
-  assert.deepEqual(problems, []);
-  await page.close();
-});
+for (const [name, button, pattern] of [
+  ['three', 'flip', /^\d{3,} flips on (cpu|webgpu)$/],
+  [
+    'terrain',
+    'bring',
+    /^\d{2,} flips brought the water in, \d+ made the rest Delaunay; the lake has \d{2,} triangles$/,
+  ],
+]) {
+  test(`three.js draws what became Delaunay: ${name}.html`, async () => {
+    const { page, problems } = await open(`${name}.html`);
+    await page.waitForSelector(`#${button}:enabled`);
+    const picture = () => page.locator('canvas').screenshot();
+    /** The first picture that differs, because the software GPU takes its time. */
+    const pictureAfter = async (old) => {
+      for (const start = performance.now(); performance.now() - start < 30_000; await page.waitForTimeout(200)) {
+        const now = await picture();
+        if (!now.equals(old)) return now;
+      }
+      return old;
+    };
+    await page.waitForTimeout(1000);
+    const before = await picture();
+    assert.deepEqual(await picture(), before);
+    await page.click(`#${button}`);
+    assert.match(await stateOf(page, ' flips '), pattern);
+    assert.notDeepEqual(await pictureAfter(before), before);
+    assert.deepEqual(problems, []);
+    await page.close();
+  });
+}
 
 /**
  * Runs in the page: draws a frame, gives its positions to a session on the CPU, which must give the same, and audits the
