@@ -4,6 +4,7 @@ mod cells;
 mod constraints;
 mod large;
 mod long;
+mod motions;
 mod oracle;
 mod session;
 mod threads;
