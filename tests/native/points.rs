@@ -2,7 +2,9 @@
 
 mod cells;
 mod constraints;
+mod large;
 mod long;
+mod motions;
 mod oracle;
 mod session;
 mod threads;
@@ -14,9 +16,13 @@ use oorandom::Rand64;
 use oracle::check;
 use std::collections::BTreeSet;
 
+fn is_full() -> bool {
+    std::env::var("EDGEFLIP_FULL").is_ok_and(|full| full == "1")
+}
+
 /// Each kind of points as often as this. The full run has the number that the project promises.
 fn seeds() -> u64 {
-    if std::env::var_os("EDGEFLIP_FULL").is_some() { 1000 } else { 25 }
+    if is_full() { 1000 } else { 25 }
 }
 
 fn wide(points: &[[f64; 2]]) -> Positions {

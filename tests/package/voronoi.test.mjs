@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';
 import { Delaunay } from 'd3-delaunay';
-import { init, triangulateSync, voronoi, voronoiSync } from 'edgeflip/points';
+import { init, PointSession, triangulateSync, voronoi, voronoiSync } from 'edgeflip/points';
 import { KINDS, randomOf, refused } from './points.mjs';
 
 await init();
@@ -178,6 +178,25 @@ test('each form of the same input gives the same cells', async () => {
   const box = [Math.min, Math.max].flatMap((most) => [0, 1].map((axis) => most(...pairs.map((pair) => pair[axis]))));
   assert.deepEqual(voronoiSync(numbers, triangulation), voronoiSync(numbers, triangulation, { bounds: box }));
   assert.deepEqual(await voronoi(numbers, triangulation, { bounds: undefined }), voronoiSync(numbers, triangulation));
+});
+
+test('the triangulation of a session has cells, unless a point was removed', async () => {
+  const random = randomOf(23);
+  const points = Array.from({ length: 200 }, () => [random(1000), random(1000)]);
+  const bounds = [0, 0, 1000, 1000];
+  const session = await PointSession.create(points);
+  for (const [i, [x, y]] of points.entries()) if (i % 7 === 0) points[i] = [y, x];
+  session.update(points);
+  points.push([-5, 500]);
+  session.add(-5, 500);
+  const diagram = voronoiSync(points, session.triangulation(), { bounds });
+  assert.deepEqual(diagram, diagramOf(points, bounds));
+  session.remove(100);
+  assert.throws(
+    () => voronoiSync(points, session.triangulation(), { bounds }),
+    refused('invalid-input', /^triangulation: a point is neither in it nor a duplicate; /),
+  );
+  session.free();
 });
 
 test('the caller keeps its arrays, and gets arrays of its own', () => {

@@ -1,11 +1,42 @@
-//! Checks a triangulation with integers of any size, from the definitions and not from the way it was made.
+//! Checks a triangulation with exact integers, from the definitions and not from the way it was made.
 
 use edgeflip::{NONE, Positions, Triangulation};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::{Add, AddAssign, Mul, Sub};
 
 pub type Point = [BigInt; 2];
+
+/// Integers that the checks calculate with.
+pub trait Integer:
+    Ord + Default + AddAssign + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// The sign of the determinant of three points relative to a fourth.
+    fn circle_sign(rows: [[Self; 2]; 3]) -> Ordering;
+}
+
+pub trait Operand<N>: Copy + Sub<Output = N> + Mul<Output = N> {}
+
+impl<'a, N> Operand<N> for &'a N where &'a N: Sub<Output = N> + Mul<Output = N> {}
+
+impl Integer for BigInt {
+    fn circle_sign(rows: [[Self; 2]; 3]) -> Ordering {
+        sign(&determinant(rows))
+    }
+}
+
+/// A million points are checked in seconds, if these suffice.
+impl Integer for i128 {
+    fn circle_sign(rows: [[Self; 2]; 3]) -> Ordering {
+        // The squares and the minors are at most 2^61, and three of their products less than 2^124.
+        if rows.as_flattened().iter().all(|x| x.abs() <= 1 << 30) {
+            sign(&determinant(rows))
+        } else {
+            BigInt::circle_sign(rows.map(|row| row.map(BigInt::from)))
+        }
+    }
+}
 
 /// Mantissa and exponent of a finite number.
 fn decode(x: f64) -> (i64, i32) {
@@ -17,31 +48,51 @@ fn decode(x: f64) -> (i64, i32) {
     (if x < 0.0 { -1 } else { 1 } * (magnitude >> zeros), exponent.max(1) - 1075 + zeros as i32)
 }
 
-/// The points as integers times one power of two.
-pub fn integers(positions: &Positions) -> Vec<Point> {
+/// The numbers as multiples of one power of two: a factor, and how far to shift it.
+fn shifted(positions: &Positions) -> Vec<(i64, i32)> {
     let decoded: Vec<(i64, i32)> = positions.iter().map(decode).collect();
     let unit = decoded.iter().filter(|number| number.0 != 0).map(|number| number.1).min().unwrap_or(0);
-    let integer = |&(m, e): &(i64, i32)| if m == 0 { BigInt::ZERO } else { BigInt::from(m) << (e - unit) };
-    decoded.as_chunks::<2>().0.iter().map(|pair| pair.each_ref().map(integer)).collect()
+    decoded.into_iter().map(|(m, e)| if m == 0 { (0, 0) } else { (m, e - unit) }).collect()
+}
+
+/// The points as integers times one power of two.
+pub fn integers(positions: &Positions) -> Vec<Point> {
+    let integer = |&(m, shift): &(i64, i32)| BigInt::from(m) << shift;
+    shifted(positions).as_chunks::<2>().0.iter().map(|pair| pair.each_ref().map(integer)).collect()
+}
+
+/// The same if no integer is larger than 2^53.
+fn small_integers(positions: &Positions) -> Option<Vec<[i128; 2]>> {
+    let integer = |(m, shift): (i64, i32)| {
+        // A longer shift gives a larger integer, too.
+        let integer = i128::from(m) << shift.min(54);
+        (integer.abs() <= 1 << 53).then_some(integer)
+    };
+    let numbers: Option<Vec<i128>> = shifted(positions).into_iter().map(integer).collect();
+    numbers.map(|numbers| numbers.as_chunks().0.to_vec())
 }
 
 /// Twice the area of (a, b, c).
-pub fn area(a: &Point, b: &Point, c: &Point) -> BigInt {
+pub fn area<N: Integer>(a: &[N; 2], b: &[N; 2], c: &[N; 2]) -> N
+where
+    for<'a> &'a N: Operand<N>,
+{
     (&b[0] - &a[0]) * (&c[1] - &a[1]) - (&b[1] - &a[1]) * (&c[0] - &a[0])
 }
 
-/// Positive if `d` is inside the circle through the counter-clockwise `a`, `b` and `c`: the determinant of Guibas and
-/// Stolfi.
-fn in_circle(a: &Point, b: &Point, c: &Point, d: &Point) -> BigInt {
-    let rows = [a, b, c].map(|p| [&p[0] - &d[0], &p[1] - &d[1]]);
-    let square = |[x, y]: &Point| x * x + y * y;
-    let minor = |[px, py]: &Point, [qx, qy]: &Point| px * qy - py * qx;
+/// The determinant of Guibas and Stolfi, of three points relative to a fourth.
+fn determinant<N: Integer>(rows: [[N; 2]; 3]) -> N
+where
+    for<'a> &'a N: Operand<N>,
+{
+    let square = |[x, y]: &[N; 2]| x * x + y * y;
+    let minor = |[px, py]: &[N; 2], [qx, qy]: &[N; 2]| px * qy - py * qx;
     square(&rows[0]) * minor(&rows[1], &rows[2]) - square(&rows[1]) * minor(&rows[0], &rows[2])
         + square(&rows[2]) * minor(&rows[0], &rows[1])
 }
 
-fn sign(x: &BigInt) -> Ordering {
-    x.cmp(&BigInt::ZERO)
+fn sign<N: Integer>(x: &N) -> Ordering {
+    x.cmp(&N::default())
 }
 
 fn after(h: usize) -> usize {
@@ -51,7 +102,16 @@ fn after(h: usize) -> usize {
 /// Checks everything that the documentation of a triangulation promises, but for which constraints come in. Returns for
 /// each half-edge whether it is a tie: whether its four points are on one circle.
 pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
-    let points = integers(positions);
+    match small_integers(positions) {
+        Some(points) => check_integers(&points, result),
+        None => check_integers(&integers(positions), result),
+    }
+}
+
+fn check_integers<N: Integer>(points: &[[N; 2]], result: &Triangulation) -> Vec<bool>
+where
+    for<'a> &'a N: Operand<N>,
+{
     let at = |v: u32| &points[v as usize];
     let Triangulation { triangles, twins, hull, duplicates, constraint_edges, .. } = result;
     let ordered = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
@@ -59,7 +119,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
 
     let mut first = BTreeMap::new();
     let expected: Vec<[u32; 2]> = (0..)
-        .zip(&points)
+        .zip(points)
         .filter_map(|(i, point)| Some([i, *first.entry(point).or_insert(i)]).filter(|[i, used]| i != used))
         .collect();
     assert_eq!(*duplicates, expected);
@@ -82,7 +142,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
     );
     assert!(rows.windows(2).all(|pair| pair[0][..2] < pair[1][..2]), "the triangles are not sorted");
     assert_eq!(triangles.iter().copied().collect::<BTreeSet<u32>>(), distinct);
-    let mut sum = BigInt::ZERO;
+    let mut sum = N::default();
     for &[a, b, c] in rows {
         let area = area(at(a), at(b), at(c));
         assert!(sign(&area).is_gt(), "{a} {b} {c} is not positive");
@@ -100,8 +160,14 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
         }
         let g = g as usize;
         assert_eq!((twins[g], triangles[g], triangles[after(g)]), (h as u32, b, a));
+        if g < h {
+            // The twin has decided.
+            tied[h] = tied[g];
+            continue;
+        }
         let d = triangles[after(after(g))];
-        match sign(&in_circle(at(a), at(b), at(c), at(d))) {
+        let relative = |v: u32| [0, 1].map(|axis| &at(v)[axis] - &at(d)[axis]);
+        match N::circle_sign([a, b, c].map(relative)) {
             _ if !is_free => {}
             Ordering::Less => {}
             Ordering::Equal => {
@@ -120,7 +186,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
 
     assert_eq!(hull.len(), next_on_hull.len());
     assert_eq!(hull.iter().min(), hull.first());
-    let mut outline = BigInt::ZERO;
+    let mut outline = N::default();
     for (i, &b) in hull.iter().enumerate() {
         let [a, c] = [hull.len() - 1, 1].map(|step| hull[(i + step) % hull.len()]);
         assert_eq!(next_on_hull[&b], c);
@@ -130,7 +196,7 @@ pub fn check(positions: &Positions, result: &Triangulation) -> Vec<bool> {
         assert!(turn.is_gt() || turn.is_eq() && sign(&ahead).is_gt(), "the hull is not convex at {b}");
         outline += &q[0] * &r[1] - &q[1] * &r[0];
     }
-    assert_eq!(sum, outline, "the triangles do not cover the hull once");
+    assert!(sum == outline, "the triangles do not cover the hull once");
     assert_eq!(rows.len(), 2 * distinct.len() - 2 - hull.len());
     tied
 }

@@ -1,11 +1,11 @@
 //! The number of threads does not change the triangulation.
 
-use super::{KINDS, oracle::check, points, wide};
+use super::{KINDS, is_full, oracle::check, points, wide};
 use edgeflip::{Error, MOST_THREADS, PointOptions, Positions, Triangulation, triangulate_with};
 use oorandom::Rand64;
 use std::num::NonZeroUsize;
 
-fn on_threads(positions: &Positions, threads: usize) -> Result<Triangulation, Error> {
+pub fn on_threads(positions: &Positions, threads: usize) -> Result<Triangulation, Error> {
     triangulate_with(positions, &PointOptions { threads: NonZeroUsize::new(threads), ..Default::default() })
 }
 
@@ -62,14 +62,13 @@ fn few_points() {
 /// So many that every loop has several pieces.
 #[test]
 fn many_points() {
-    let is_full = std::env::var_os("EDGEFLIP_FULL").is_some();
     for (name, kind) in KINDS {
-        if is_full || ["uniform", "lattice", "half of them repeated", "tight clusters"].contains(&name) {
+        if is_full() || ["uniform", "lattice", "half of them repeated", "tight clusters"].contains(&name) {
             same(name, &wide(&points(kind, 200_000, 1)));
         }
     }
     for (name, points) in odd_sets(200_000) {
-        if is_full || ["far away", "ever closer", "few values", "wide, normal"].contains(&name) {
+        if is_full() || ["far away", "ever closer", "few values", "wide, normal"].contains(&name) {
             same(name, &wide(&points));
         }
     }
