@@ -13,7 +13,7 @@ export interface Preparation {
   /** What `weld` joined. */
   welded?: Welded;
   /** What `constraints` brought in. */
-  constrained?: Pick<Constrained, 'flips' | 'leftOut'>;
+  constrained?: Pick<Constrained, 'crossedEdges' | 'leftOut'>;
   /** What the audit compares with, until vertices move. */
   before?: Before | undefined;
 }
@@ -47,7 +47,7 @@ export async function prepare(
   const { indices, welded } = prepared;
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
-  const { constraintEdges, flips, leftOut, ...made } = await constrain(
+  const { constraintEdges, crossedEdges, leftOut, ...made } = await constrain(
     { ...mesh, indices },
     ends,
     locks,
@@ -56,7 +56,7 @@ export async function prepare(
   const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
-    constrained: { flips, leftOut },
+    constrained: { crossedEdges, leftOut },
     before: {
       indices,
       // A copy, because a session may transfer its settings.

@@ -32,7 +32,7 @@ export function resultOf<I extends IndexArray>(
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,
-    constraintFlips: constrained?.flips ?? 0,
+    crossedEdges: constrained?.crossedEdges ?? 0,
     leftOut: constrained?.leftOut ?? [],
   });
 }

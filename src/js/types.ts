@@ -140,7 +140,7 @@ export interface Options {
   groups?: IndexArray | undefined;
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
-   * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
+   * that they cross make way for others; then they are locked. A vertex on such an edge splits it. An edge that crosses another
    * one, a locked edge or the boundary is an error that names both. For a terrain, give `dimension: 2, stride: 3`: the
    * heights then do not count. Loads the module of `edgeflip/files`.
    */
@@ -417,8 +417,8 @@ export interface Result<I extends IndexArray = Uint32Array> {
   joinedVertices: number;
   /** Edges that `weld` locked, because attributes differ across them. */
   seamEdges: number;
-  /** Flips that brought `constraints` in. `flips` does not count them. */
-  constraintFlips: number;
+  /** How many edges the `constraints` crossed: each made way for another one, without a flip. */
+  crossedEdges: number;
   /** The constraints that `skipConstraints` left out. */
   leftOut: LeftOut[];
   /**

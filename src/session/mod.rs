@@ -252,7 +252,7 @@ impl Session {
             fallback: self.fallback.clone(),
             iterations: self.flips_per_iteration.len() as u32,
             flips: self.flips(),
-            constraint_flips: self.constraints.flips,
+            crossed_edges: self.constraints.crossed_edges,
             constraint_edges: self.constraint_edges().to_vec(),
             left_out: self.constraints.left_out.clone(),
             lost_edges: self.held.lost.clone(),

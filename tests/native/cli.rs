@@ -35,7 +35,7 @@ const KEYS: [&str; 37] = [
     "status",
     "iterations",
     "flips",
-    "constraint_flips",
+    "crossed_edges",
     "left_out",
     "lost_edges",
     "flips_per_iteration",

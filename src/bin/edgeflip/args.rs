@@ -149,7 +149,7 @@ pub struct Args {
 
     /// Edges to bring in before the run: a text file with the two vertices of an edge in each line
     ///
-    /// Only in the plane. The edges that they cross flip away; then they are locked. A vertex on such an edge splits it.
+    /// Only in the plane. The edges that they cross make way for others; then they are locked. A vertex on such an edge splits it.
     /// Vertices count as for --lock-edges. An edge that crosses another one of the list, a locked edge or the boundary
     /// is an error.
     #[arg(long, value_name = "FILE")]
@@ -219,7 +219,7 @@ pub struct Args {
     /// coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
     /// notes), points (null for a mesh: heights, whether they have a third coordinate; hull, the points on it,
     /// counter-clockwise; duplicates, each point that equals an earlier one, and that one), backend, adapter, fallback,
-    /// status (done or stopped), iterations, flips, constraint_flips, left_out (for each constraint left out, its index
+    /// status (done or stopped), iterations, flips, crossed_edges (that made way for constraints), left_out (for each constraint left out, its index
     /// in the list and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
     /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
     /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),

@@ -34,7 +34,7 @@ pub struct Report {
     status: &'static str,
     iterations: u32,
     flips: u64,
-    constraint_flips: u64,
+    crossed_edges: u64,
     left_out: Vec<LeftOut>,
     lost_edges: Vec<[u32; 2]>,
     flips_per_iteration: Vec<u32>,
@@ -206,7 +206,7 @@ impl Report {
             },
             iterations: outcome.iterations,
             flips: outcome.flips,
-            constraint_flips: outcome.constraint_flips,
+            crossed_edges: outcome.crossed_edges,
             left_out: outcome.left_out,
             lost_edges: outcome.lost_edges,
             flips_per_iteration: outcome.flips_per_iteration,
@@ -339,9 +339,9 @@ impl Report {
                 format!("{} on the device, {each:.1} bytes per triangle", HumanBytes(self.device_bytes)),
             );
         }
-        if self.constraint_flips > 0 {
-            let flips = HumanCount(self.constraint_flips);
-            line("inserted", format!("constraints, by {flips} flips"));
+        if self.crossed_edges > 0 {
+            let edges = HumanCount(self.crossed_edges);
+            line("inserted", format!("constraints, which crossed {edges} edges"));
         }
         if let Some(LeftOut { reason, .. }) = self.left_out.first() {
             line("left out", format!("constraints: {}; {reason}", HumanCount(self.left_out.len() as u64)));
