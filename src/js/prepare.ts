@@ -13,7 +13,7 @@ export interface Preparation {
   /** What `weld` joined. */
   welded?: Welded;
   /** What `constraints` brought in. */
-  constrained?: Pick<Constrained, 'crossedEdges' | 'leftOut'>;
+  constrained?: Pick<Constrained, 'crossedEdges' | 'leftOut'> & { ms: number };
   /** What the audit compares with, until vertices move. */
   before?: Before | undefined;
 }
@@ -47,6 +47,7 @@ export async function prepare(
   const { indices, welded } = prepared;
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
+  const start = performance.now();
   const { constraintEdges, crossedEdges, leftOut, ...made } = await constrain(
     { ...mesh, indices },
     ends,
@@ -56,7 +57,7 @@ export async function prepare(
   const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
-    constrained: { crossedEdges, leftOut },
+    constrained: { crossedEdges, leftOut, ms: performance.now() - start },
     before: {
       indices,
       // A copy, because a session may transfer its settings.

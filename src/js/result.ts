@@ -23,6 +23,8 @@ export function resultOf<I extends IndexArray>(
   { threads = 1, alone, untangles, turned = 0, welded, constrained }: Context,
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
+  const { timings } = outcome;
+  const constraints = constrained?.ms ?? 0;
   const isOnCpu = outcome.backend === 'cpu';
   const indices = welded?.split(outcome.indices) ?? outcome.indices;
   return Object.assign(outcome, {
@@ -34,5 +36,6 @@ export function resultOf<I extends IndexArray>(
     seamEdges,
     crossedEdges: constrained?.crossedEdges ?? 0,
     leftOut: constrained?.leftOut ?? [],
+    timings: { ...timings, constraints, total: constraints + timings.total },
   });
 }

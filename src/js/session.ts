@@ -261,6 +261,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #moved(): void {
     this.#prepared.before = undefined;
+    if (this.#prepared.constrained) this.#prepared.constrained.ms = 0;
     this.#untangles ??= true;
   }
 

@@ -438,9 +438,10 @@ export interface Result<I extends IndexArray = Uint32Array> {
   /** Triangles of no area: their corners are on one line, exactly. */
   flat: number;
   /**
-   * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
-   * the twins, `flip` the iterations, `total` all of it, but not `weld`, `reorient` and `constraints`. WebGPU in a
-   * browser is awaited once, after the first iterations; `flip` then includes the copies and the adjacency.
+   * Times in milliseconds: `constraints` is what brought the constraints in, with the loading of its module, `upload` the
+   * preparation of a GPU and the copies to it, `adjacency` the construction of the twins, `flip` the iterations, `total`
+   * all of it, but not `weld`, `reorient` and `untangle`. WebGPU in a browser is awaited once, after the first
+   * iterations; `flip` then includes the copies and the adjacency.
    */
-  timings: { upload: number; adjacency: number; flip: number; total: number };
+  timings: { constraints: number; upload: number; adjacency: number; flip: number; total: number };
 }

@@ -55,6 +55,8 @@ pub enum Status {
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
+    /// What brought the constraints in, before the engine got the mesh.
+    pub constraints: f64,
     /// On a GPU, the time before the adjacency: checks, allocation and copies to the device; in the first session also
     /// opening the device and compiling the kernels. On the CPU, it is 0.
     pub upload: f64,

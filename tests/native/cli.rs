@@ -58,11 +58,12 @@ const KEYS: [&str; 37] = [
 ];
 
 /// The parts of the wall time.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     "start",
     "load",
     "prepare",
     "device",
+    "constraints",
     "upload",
     "adjacency",
     "flip",

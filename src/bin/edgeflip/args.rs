@@ -232,8 +232,8 @@ pub struct Args {
     /// before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
-    /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload;
-    /// adjacency; flip; count (triangles are read back, and the edges left are counted); measure; verify; save. The
+    /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read);
+    /// constraints (they come in); upload; adjacency; flip; count (triangles are read back, and the edges left are counted); measure; verify; save. The
     /// total is the time from the start of the program to this object. After that, OUT gets its name.
     #[arg(long)]
     pub json: bool,

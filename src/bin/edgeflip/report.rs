@@ -136,6 +136,7 @@ pub struct Milliseconds {
     pub load: f64,
     pub prepare: f64,
     pub device: f64,
+    pub constraints: f64,
     pub upload: f64,
     pub adjacency: f64,
     pub flip: f64,
@@ -148,20 +149,22 @@ pub struct Milliseconds {
 
 impl Milliseconds {
     /// Adds the times of the library, rounded to microseconds.
-    pub fn of_run(&mut self, &Timings { upload, adjacency, flip, total }: &Timings) {
-        let [upload, adjacency, flip, count] =
-            [upload, adjacency, flip, total - upload - adjacency - flip].map(|ms| (ms * 1e3).round() / 1e3);
-        *self = Self { upload, adjacency, flip, count, ..mem::take(self) };
+    pub fn of_run(&mut self, &Timings { constraints, upload, adjacency, flip, total }: &Timings) {
+        let count = total - constraints - upload - adjacency - flip;
+        let [constraints, upload, adjacency, flip, count] =
+            [constraints, upload, adjacency, flip, count].map(|ms| (ms * 1e3).round() / 1e3);
+        *self = Self { constraints, upload, adjacency, flip, count, ..mem::take(self) };
     }
 
     /// The parts that were done, with their names.
     fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let &Self { start, load, prepare, device, upload, adjacency, flip, count, .. } = self;
+        let &Self { start, load, prepare, device, constraints, upload, adjacency, flip, count, .. } = self;
         let all = [
             ("start", Some(start)),
             ("load", Some(load)),
             ("prepare", Some(prepare)),
             ("device", Some(device)),
+            ("constraints", Some(constraints)),
             ("upload", Some(upload)),
             ("adjacency", Some(adjacency)),
             ("flips", Some(flip)),
