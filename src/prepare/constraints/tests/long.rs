@@ -131,7 +131,7 @@ fn tracks_on_several_sheets_come_in_or_change_nothing() {
             now = result.mesh;
         }
     }
-    assert!(crossed > 3000 && doubled > 20, "{crossed}, {doubled}");
+    assert!(crossed > 3000 && doubled > 15, "{crossed}, {doubled}");
 }
 
 /// The triangles of vertex 2 turn by 378° above the line: it looks like a convex corner, and is not.
