@@ -9,9 +9,10 @@ use edgeflip::{Backend, Mesh, Options, Order, constrained, io, make_delaunay};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::{error::Error, hint::black_box, num::NonZeroUsize, ops::ControlFlow, sync::Arc, time::Instant};
 
-const FILES: [&str; 2] = [
+const FILES: [&str; 3] = [
     concat!(env!("CARGO_MANIFEST_DIR"), "/../target/constraints/coasts"),
     concat!(env!("CARGO_MANIFEST_DIR"), "/../target/constraints/lines"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../target/constraints/track"),
 ];
 
 /// What is measured, with its name.

@@ -30,7 +30,7 @@ const sides = rings.flatMap((ring) => {
 const positions = Float64Array.from([...vertices.keys()].flatMap((key) => key.split(' ').map(Number)));
 
 const points = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
-const { indices: start, lockedEdges, constraintEdges, flips } = await constrain(points, sides);
+const { indices: start, lockedEdges, constraintEdges, crossedEdges } = await constrain(points, sides);
 const { indices } = await makeDelaunay({ ...points, indices: start }, { lockedEdges });
 const { inside, ofTriangles } = await regions({ ...points, indices }, constraintEdges);
 
@@ -45,4 +45,6 @@ ${triangles.join('\n')}
 </svg>
 `;
 writeFileSync(process.argv[2] ?? 'map.svg', picture);
-console.log(`${vertices.size} points; ${flips} flips brought the borders in; ${land.length} triangles of states`);
+console.log(
+  `${vertices.size} points; ${crossedEdges} edges made way for the borders; ${land.length} triangles of states`,
+);

@@ -109,7 +109,7 @@ resize();
 button.onclick = async () => {
   button.disabled = true;
   geometry.clearGroups();
-  const { constraintFlips, flips } = await delaunayGeometry(geometry, { plane: 'xz', constraints: lines });
+  const { crossedEdges, flips } = await delaunayGeometry(geometry, { plane: 'xz', constraints: lines });
   // The triangles of the lake come last, and have a group of their own.
   const { array } = geometry.index;
   const mesh = { positions: geometry.attributes.position.array, indices: array, dimension: 2, plane: 'xz' };
@@ -122,6 +122,6 @@ button.onclick = async () => {
   edges.geometry = new WireframeGeometry(geometry);
   banks.visible = true;
   draw();
-  state.value = `${constraintFlips} flips brought the water in, ${flips} made the rest Delaunay; the lake has ${wet.length / 3} triangles`;
+  state.value = `${crossedEdges} edges made way for the water, ${flips} flips made the rest Delaunay; the lake has ${wet.length / 3} triangles`;
 };
 button.disabled = false;

@@ -90,8 +90,8 @@ export interface Constrained {
    * constraint through vertices is several edges.
    */
   constraintEdges: Uint32Array;
-  /** The flips that brought them in. */
-  flips: number;
+  /** How many edges they crossed: each made way for another one. */
+  crossedEdges: number;
   /** The constraints that were left out. */
   leftOut: LeftOut[];
 }
@@ -312,7 +312,7 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
 }
 
 /**
- * Brings edges into a mesh in the plane: the edges that they cross flip away, by exact tests. No vertex moves, and none
+ * Brings edges into a mesh in the plane: the edges that they cross make way for others, by exact tests. No vertex moves, and none
  * is added. The option `constraints` does so before a run.
  *
  * @param constraints - Pairs of vertices, as the option `constraints`.

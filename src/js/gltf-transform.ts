@@ -126,7 +126,7 @@ async function transformed(document: Document, options: DelaunayOptions): Promis
     for (const [reason, count] of Object.entries(result.remaining)) {
       remaining[reason as Reason] = (remaining[reason as Reason] ?? 0) + count;
     }
-    if (result.flips + result.turnedTriangles + result.constraintFlips === 0) continue;
+    if (result.flips + result.turnedTriangles + result.crossedEdges === 0) continue;
     changed += 1;
     write(document, primitives, indices);
   }

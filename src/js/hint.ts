@@ -61,7 +61,7 @@ export function hintOf(
     hints.push(`Triangles that are turned over: ${inverted}. They overlap their neighbours, and ${remedy}. ${LISTED}`);
     if (rightPlane) hints.push(`In the plane ${rightPlane} no triangle is turned over: pass plane: '${rightPlane}'.`);
     else if (!layout.plane && layout.dimension === 2 && layout.stride === 3) {
-      hints.push("If the mesh is a terrain and z is not up, pass plane: 'xz' or 'yz'.");
+      hints.push("If z is not up, pass plane: 'xz' or 'yz'.");
     }
   }
   if (flat > 0) {

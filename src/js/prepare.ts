@@ -13,7 +13,11 @@ export interface Preparation {
   /** What `weld` joined. */
   welded?: Welded;
   /** What `constraints` brought in. */
-  constrained?: Pick<Constrained, 'flips' | 'leftOut'>;
+  constrained?: Pick<Constrained, 'crossedEdges' | 'leftOut'> & {
+    ms: number;
+    /** The edges of the constraints by the vertices of a result. `joined` are its triangles before the split. */
+    edgesIn: (indices: Uint32Array, joined: Uint32Array) => Uint32Array;
+  };
   /** What the audit compares with, until vertices move. */
   before?: Before | undefined;
 }
@@ -47,7 +51,8 @@ export async function prepare(
   const { indices, welded } = prepared;
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
-  const { constraintEdges, flips, leftOut, ...made } = await constrain(
+  const start = performance.now();
+  const { constraintEdges, crossedEdges, leftOut, ...made } = await constrain(
     { positions: mesh.positions, indices, dimension: mesh.dimension },
     ends,
     locks,
@@ -56,7 +61,12 @@ export async function prepare(
   const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
-    constrained: { flips, leftOut },
+    constrained: {
+      crossedEdges,
+      leftOut,
+      ms: performance.now() - start,
+      edgesIn: (indices, joined) => edgesIn(constraintEdges, indices, joined),
+    },
     before: {
       indices,
       // A copy, because a session may transfer its settings.
@@ -94,6 +104,26 @@ async function untangled({ positions, dimension }: IndexedMesh, prepared: Prepar
   const { lockedTriangles, groups, ...others } = settings;
   const { lockedEdges, lostEdges } = begun;
   return { ...prepared, indices: begun.indices, settings: { ...others, lockedEdges, lostEdges } };
+}
+
+/**
+ * The ends of edges by the vertices of a result. `joined` has the same corners with the vertices of the edges.
+ */
+function edgesIn(edges: Uint32Array, indices: Uint32Array, joined: Uint32Array): Uint32Array {
+  if (joined === indices) return edges.slice();
+  const ends = new Set(edges);
+  const keyOf = (from: number, to: number) => Math.min(from, to) * 2 ** 32 + Math.max(from, to);
+  const corners = new Map<number, number>();
+  for (let h = 0; h < joined.length; h++) {
+    if (!ends.has(joined[h]!)) continue;
+    const to = joined[h % 3 === 2 ? h - 2 : h + 1]!;
+    if (ends.has(to)) corners.set(keyOf(joined[h]!, to), h);
+  }
+  return edges.map((vertex, i) => {
+    const h = corners.get(keyOf(vertex, edges[i ^ 1]!));
+    if (h === undefined) return vertex;
+    return indices[joined[h] === vertex ? h : h % 3 === 2 ? h - 2 : h + 1]!;
+  });
 }
 
 /** The locks of the options, and the locks that keep the attributes. */

@@ -25,6 +25,8 @@ export function resultOf<I extends IndexArray>(
   { threads = 1, alone, untangles, rightPlane, turned = 0, welded, constrained }: Context,
 ): Result<I> {
   const seamEdges = (welded?.lockedEdges.length ?? 0) / 2;
+  const { timings } = outcome;
+  const constraints = constrained?.ms ?? 0;
   const isOnCpu = outcome.backend === 'cpu';
   const indices = welded?.split(outcome.indices) ?? outcome.indices;
   return Object.assign(outcome, {
@@ -39,7 +41,9 @@ export function resultOf<I extends IndexArray>(
     turnedTriangles: turned,
     joinedVertices: welded?.joined ?? 0,
     seamEdges,
-    constraintFlips: constrained?.flips ?? 0,
+    crossedEdges: constrained?.crossedEdges ?? 0,
+    constraintEdges: constrained?.edgesIn(indices, outcome.indices) ?? new Uint32Array(),
     leftOut: constrained?.leftOut ?? [],
+    timings: { ...timings, constraints, total: constraints + timings.total },
   });
 }

@@ -134,13 +134,12 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
     const chosen = settingsOf(options, known);
     try {
       // Without these options, their modules are not loaded.
-      const { untangle, reorient, weld, constraints } = chosen;
-      const isPrepared = reorient || weld || constraints || untangle;
-      const { space } = views;
-      if (!isPrepared && !space)
-        return new FlipSession(await open(views, chosen, settles), layout, untangle, undefined);
+      const { untangle } = chosen;
+      const isPrepared = untangle || chosen.reorient || chosen.weld || chosen.constraints;
+      const isPlain = !isPrepared && !views.space;
+      if (isPlain) return new FlipSession(await open(views, chosen, settles), layout, untangle, undefined);
       const copy = copied(views);
-      const heights = space && new (await import('./heights.js')).Heights(layout.plane!, copy.space!, copy.indices);
+      const heights = copy.space && new (await import('./heights.js')).Heights(layout.plane!, copy.space, copy.indices);
       if (!isPrepared) return new FlipSession(await open(copy, chosen, settles), layout, untangle, heights);
       const { prepare } = await import('./prepare.js');
       const { indices, settings, ...prepared } = await prepare(copy, chosen);
@@ -272,6 +271,7 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   #moved(): void {
     this.#prepared.before = undefined;
+    if (this.#prepared.constrained) this.#prepared.constrained.ms = 0;
     this.#untangles ??= true;
   }
 
@@ -405,13 +405,13 @@ export class FlipSession<I extends IndexArray = Uint32Array> implements AsyncIte
 
   /**
    * The device and the buffers on the GPU, to draw without a copy; `undefined` on the CPU. `positions` has 2 or 3 f32
-   * per vertex, with a plane 3 (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes STORAGE, VERTEX or
-   * INDEX, COPY_SRC and COPY_DST. Write only `positions`, for {@link update}, and use the buffers only until `free`;
-   * {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of the session: if the
-   * GPU fails or cannot accept new positions, the session continues on the CPU. The device is the `device` of the options, else one that all sessions
-   * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a buffer
-   * on; with the option `adjacency`, `twins` and `vertexHalfEdges` are there, right after every call of the session.
-   * The usage of these buffers includes STORAGE and COPY_SRC. Only read them.
+   * per vertex, with a plane 3 (doubles are rounded), `indices` 3 u32 per triangle. The usage of both includes
+   * STORAGE, VERTEX or INDEX, COPY_SRC and COPY_DST. Write only `positions`, for {@link update}, and use the buffers
+   * only until `free`; {@link setPositions} says when it keeps them. With `'auto'`, call this again after each call of
+   * the session, which may continue on the CPU. The device is the `device` of the options, else one that all sessions
+   * share. With the option `trackChanges`, `changes` has a u32 per triangle as {@link changes}, from a byte of a
+   * buffer on; with the option `adjacency`, `twins` and `vertexHalfEdges` are there, right after every call of the
+   * session. The usage of these buffers includes STORAGE and COPY_SRC. Only read them.
    */
   gpu(): Promise<SessionBuffers | undefined> {
     return this.#call(async ({ gpu }) => gpu && (this.#heights?.withHeights(gpu) ?? gpu));

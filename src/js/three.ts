@@ -119,7 +119,7 @@ export async function delaunayGeometry<G extends BufferGeometry>(
   if (onGpu) draw(target, onGpu);
   else {
     release(target);
-    if (result.flips + result.turnedTriangles + result.constraintFlips > 0)
+    if (result.flips + result.turnedTriangles + result.crossedEdges > 0)
       write(target, indices, range, surface.vertices, isInPlace);
   }
   return { geometry: target, session: onGpu?.session, ...result, ...shifts };

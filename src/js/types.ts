@@ -1,108 +1,9 @@
 /** The types of the input, the options and the results. */
 
-import type { Original } from './original.js';
-import type { Plane } from './plane.js';
+import type { Attributes, GpuBuffer, GpuDevice, IndexArray, Indices, VertexArray } from './mesh-types.js';
 
 export type { Edges } from './edges.js';
-export type { Files, Original } from './original.js';
-export type { Plane } from './plane.js';
-
-/** A `GPUDevice`, where the types of WebGPU are known. */
-export type GpuDevice = typeof globalThis extends { GPUDevice: { prototype: infer T } } ? T : unknown;
-
-/** A `GPUBuffer`, where the types of WebGPU are known. */
-export type GpuBuffer = typeof globalThis extends { GPUBuffer: { prototype: infer T } } ? T : unknown;
-
-/** Bytes in a buffer of their own. */
-export type Bytes = ReturnType<Uint8Array['slice']>;
-
-/** Vertex indices, in an array of whole numbers. */
-export type IndexArray =
-  | Int8Array
-  | Uint8Array
-  | Uint8ClampedArray
-  | Int16Array
-  | Uint16Array
-  | Int32Array
-  | Uint32Array
-  | readonly number[];
-
-/** Indices of a result, in an array of the type of `I`. */
-export type Indices<I extends IndexArray> = I extends Uint32Array
-  ? Uint32Array
-  : I extends Uint16Array
-    ? Uint16Array
-    : I extends Uint8Array
-      ? Uint8Array
-      : I extends Uint8ClampedArray
-        ? Uint8ClampedArray
-        : I extends Int32Array
-          ? Int32Array
-          : I extends Int16Array
-            ? Int16Array
-            : I extends Int8Array
-              ? Int8Array
-              : number[];
-
-/** A triangle mesh. A call copies its arrays before it returns. */
-export interface Mesh<I extends IndexArray = IndexArray> {
-  /**
-   * 2 or 3 coordinates per vertex, with a `plane` 3. Integers, as in quantized meshes, count as these numbers. Decisions
-   * are exact for the numbers in the array. A plain array counts as 32-bit floats if all its numbers are such. The CPU
-   * accepts all finite numbers, WebGPU and WebGL2 multiples of a power of two: 84 bits and a sign relative to the centre.
-   */
-  positions: VertexArray | readonly number[];
-  /** Vertex indices, 3 per triangle. Results have indices of the same type. */
-  indices: I;
-  /** 2 for a mesh in the plane, 3 for a surface in space. */
-  dimension: 2 | 3;
-  /** For a terrain, which has the dimension 2 and 3 coordinates per vertex: those that decide. */
-  plane?: Plane | undefined;
-  /** The count of numbers in `positions` from a vertex to the next. Default: `dimension`, or 3 with a `plane`. */
-  stride?: number | undefined;
-  /** The count of numbers in `positions` before the first vertex. Default: 0. */
-  offset?: number | undefined;
-}
-
-/** A triangle mesh in buffers of a device. Their usage includes COPY_SRC. */
-export interface DeviceMesh {
-  /** f32: 2 or 3 coordinates per vertex. */
-  positions: GpuBuffer;
-  /** u32: vertex indices, 3 per triangle. */
-  indices: GpuBuffer;
-  /** 2 for a mesh in the plane, 3 for a surface in space. */
-  dimension: 2 | 3;
-  /** As {@link Mesh.plane}. */
-  plane?: Plane | undefined;
-  /** As {@link Mesh.stride}. */
-  stride?: number | undefined;
-  /** As {@link Mesh.offset}. */
-  offset?: number | undefined;
-  /** The number of vertices, if `positions` has more. Default: all that it has. */
-  vertices?: number | undefined;
-  /** The number of triangles, if `indices` has more. Default: all that it has. */
-  triangles?: number | undefined;
-}
-
-/** An attribute of the vertices: the same count of numbers for each vertex, such as 2 texture coordinates. */
-export type VertexArray =
-  | Int8Array
-  | Uint8Array
-  | Uint8ClampedArray
-  | Int16Array
-  | Uint16Array
-  | Int32Array
-  | Uint32Array
-  | Float32Array
-  | Float64Array;
-
-/**
- * The attributes that vertices at the same position are compared by: two vertices are equal if all arrays have the same
- * bits for them. Instead of arrays, it can be the file that the mesh was read from. In glTF, the vertices of each
- * primitive are joined separately, and they are equal if all accessors have the same bytes for them. In other formats,
- * all vertices at the same position are equal; write the result without `original` then.
- */
-export type Attributes = readonly VertexArray[] | Original;
+export type * from './mesh-types.js';
 
 /** An engine. All engines give the same result, bit for bit. */
 export type Engine = 'webgpu' | 'webgl2' | 'cpu';
@@ -145,8 +46,9 @@ export interface Options {
   groups?: IndexArray | undefined;
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
-   * that they cross flip away; then they are locked. A vertex on such an edge splits it. An edge that crosses another
-   * one, a locked edge or the boundary is an error that names both. A terrain needs a {@link Mesh.plane}. Loads the module of `edgeflip/files`.
+   * that they cross make way for others; then they are locked. A vertex on such an edge splits it. An edge that crosses
+   * another one, a locked edge or the boundary is an error that names both. A terrain needs a {@link Mesh.plane}. Loads
+   * the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
   /** Leaves out the constraints that cannot be brought in, and lists them as `leftOut`. Default: they are errors. */
@@ -421,8 +323,13 @@ export interface Result<I extends IndexArray = Uint32Array> {
   joinedVertices: number;
   /** Edges that `weld` locked, because attributes differ across them. */
   seamEdges: number;
-  /** Flips that brought `constraints` in. `flips` does not count them. */
-  constraintFlips: number;
+  /** How many edges the `constraints` crossed: each made way for another one, without a flip. */
+  crossedEdges: number;
+  /**
+   * The edges that `constraints` have become, two vertices per edge of these `indices`, for `regions` of
+   * `edgeflip/files`. They are in the order of the constraints; a constraint through vertices is several edges.
+   */
+  constraintEdges: Uint32Array;
   /** The constraints that `skipConstraints` left out. */
   leftOut: LeftOut[];
   /**
@@ -442,9 +349,10 @@ export interface Result<I extends IndexArray = Uint32Array> {
   /** Triangles of no area: their corners are on one line, exactly. */
   flat: number;
   /**
-   * Times in milliseconds: `upload` is the preparation of a GPU and the copies to it, `adjacency` the construction of
-   * the twins, `flip` the iterations, `total` all of it, but not `weld`, `reorient` and `constraints`. WebGPU in a
-   * browser is awaited once, after the first iterations; `flip` then includes the copies and the adjacency.
+   * Times in milliseconds: `constraints` is what brought the constraints in, with the loading of its module, `upload` the
+   * preparation of a GPU and the copies to it, `adjacency` the construction of the twins, `flip` the iterations, `total`
+   * all of it, but not `weld`, `reorient` and `untangle`. WebGPU in a browser is awaited once, after the first
+   * iterations; `flip` then includes the copies and the adjacency.
    */
-  timings: { upload: number; adjacency: number; flip: number; total: number };
+  timings: { constraints: number; upload: number; adjacency: number; flip: number; total: number };
 }

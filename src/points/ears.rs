@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 /// A polygon, or a row of vertices whose ends stay.
-pub(super) struct Corners {
+pub(crate) struct Corners {
     before: Vec<u32>,
     after: Vec<u32>,
     /// Which corners may come off.
@@ -17,7 +17,7 @@ pub(super) struct Corners {
 
 impl Corners {
     /// So many corners in a ring. Those in `inner` may come off.
-    pub(super) fn new(count: usize, inner: Range<usize>) -> Self {
+    pub(crate) fn new(count: usize, inner: Range<usize>) -> Self {
         let inner = inner.start as u32..inner.end as u32;
         let last = (count as u32).saturating_sub(1);
         let mut waiting: Vec<u32> = inner.clone().collect();
@@ -37,14 +37,14 @@ impl Corners {
     }
 
     /// The next corner to look at, between the corners before and after it.
-    pub(super) fn next(&mut self) -> Option<[usize; 3]> {
+    pub(crate) fn next(&mut self) -> Option<[usize; 3]> {
         let corner = self.waiting.pop()? as usize;
         self.is_waiting[corner] = false;
         Some([self.before[corner] as usize, corner, self.after[corner] as usize])
     }
 
     /// Takes the middle one of three corners off. Its neighbours are looked at again.
-    pub(super) fn cut(&mut self, [before, _, after]: [usize; 3]) {
+    pub(crate) fn cut(&mut self, [before, _, after]: [usize; 3]) {
         self.after[before] = after as u32;
         self.before[after] = before as u32;
         for corner in [before, after] {

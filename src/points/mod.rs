@@ -8,7 +8,7 @@ mod circle;
 mod columns;
 mod constraints;
 mod distribution;
-mod ears;
+pub(crate) mod ears;
 mod frame;
 mod groups;
 mod halves;

@@ -8,7 +8,6 @@
 mod bisectors;
 mod cosine;
 mod exact;
-mod near;
 mod plane;
 mod rounded;
 mod space;
@@ -17,8 +16,7 @@ pub(crate) use bisectors::{Line, circumcentre, compare_circumcentre, crossing, n
 pub use cosine::cos_degrees;
 #[cfg(feature = "gpu")]
 pub(crate) use cosine::cosine_fraction;
-pub(crate) use near::{dot_sign, is_near};
-pub(crate) use plane::{area_sign, cross_sign, in_circle_filter, in_circle_sign, total_area_sign};
+pub(crate) use plane::{area_sign, in_circle_filter, in_circle_sign, total_area_sign};
 pub(crate) use space::{Quad, has_area, obtuse};
 
 #[cfg(test)]

@@ -118,19 +118,6 @@ pub(crate) fn area_sign(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     area_exact(a, b, c)
 }
 
-/// The sign of the cross product of `v` - `u` and `q` - `p`: whether `q` is to the left of `p`, seen along the direction
-/// from `u` to `v`.
-pub(crate) fn cross_sign(u: DVec2, v: DVec2, p: DVec2, q: DVec2) -> Ordering {
-    let (along, across) = (v - u, q - p);
-    let (left, right) = (along.x * across.y, along.y * across.x);
-    let value = left - right;
-    // The bound of `area_sign`, whose polynomial is the same.
-    if value.abs() > 8.0 * EPSILON * (left.abs() + right.abs()) + UNDERFLOW {
-        return sign(value);
-    }
-    doubled_area_sign([(v.x, u.x), (v.y, u.y), (q.x, p.x), (q.y, p.y)])
-}
-
 /// The sign of the sum of the areas of `count` triangles.
 #[inline(never)] // else `triangle` would be inlined three times
 pub(crate) fn total_area_sign(count: usize, triangle: &dyn Fn(usize) -> [DVec2; 3]) -> Ordering {
@@ -221,11 +208,7 @@ fn area_exact(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     if HAS_TIERS_FOR_TIES && are_short(&[(a, c), (b, c)], 25) {
         return sign((a - c).perp_dot(b - c));
     }
-    doubled_area_sign([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)])
-}
-
-fn doubled_area_sign(pairs: [(f64, f64); 4]) -> Ordering {
-    let differences = Differences::new(pairs);
+    let differences = Differences::new([(a.x, c.x), (a.y, c.y), (b.x, c.x), (b.y, c.y)]);
     if HAS_TIERS_FOR_TIES && differences.bits <= MIDDLE_BITS {
         let [px, py, qx, qy] = differences.integers::<i64>().map(i128::from);
         (px * qy).cmp(&(py * qx))

@@ -1,8 +1,7 @@
 //! Compares the predicates with independent arithmetic: the crate `robust` in 2D, and big integers.
 
 use super::{
-    Quad, area_sign, cos_degrees, dot_sign, has_area, in_circle_filter, in_circle_sign, is_near, obtuse,
-    total_area_sign,
+    Quad, area_sign, cos_degrees, has_area, in_circle_filter, in_circle_sign, obtuse, total_area_sign,
 };
 use glam::{DVec2, DVec3, Vec2};
 use num_bigint::{BigInt, Sign};
@@ -154,21 +153,6 @@ fn compare_in_plane([a, b, c, d]: [DVec2; 4]) {
     assert_eq!(total, order(&(area(a3, b3, c3) + area(b3, a3, d3))));
 }
 
-fn compare_near([u, v, p, q]: [DVec2; 4], most: f64) {
-    let [along, across, other] = [
-        minus(v.extend(0.0), u.extend(0.0)),
-        minus(p.extend(0.0), u.extend(0.0)),
-        minus(q.extend(0.0), p.extend(0.0)),
-    ];
-    assert_eq!(dot_sign(u, v, p, q), order(&dot(&along, &other)));
-    if u != v {
-        let area = cross(&along, &across)[2].clone();
-        let reach = big(most) * big(most) * dot(&along, &along);
-        // The unit is that of `big`.
-        assert_eq!(is_near(u, v, p, most), &area * &area <= reach, "{u}, {v}, {p}, {most}");
-    }
-}
-
 fn filter(quads: [[[f32; 2]; 4]; 4]) -> [u32; 2] {
     in_circle_filter(&quads.each_ref().map(|quad| quad.each_ref()))
 }
@@ -237,17 +221,6 @@ proptest! {
     fn area_and_in_circle_agree_with_big_integers(quad in quad2()) {
         compare_in_plane(quad);
         compare_filter(quad);
-    }
-
-    #[test]
-    fn nearness_agrees_with_big_integers(quad in quad2(), most in double(), ulps in -1i64..=1) {
-        compare_near(quad, most.abs());
-        // A distance that is nearly that of the point.
-        let [u, v, p, _] = quad;
-        let distance = ((v - u).perp_dot(p - u) / (v - u).length()).abs();
-        if distance.is_finite() && distance > 0.0 {
-            compare_near(quad, nudged(distance, ulps));
-        }
     }
 
     #[test]

@@ -48,7 +48,7 @@ pub(crate) struct BroughtIn {
     pub(crate) before: Option<(Arc<Mesh>, Options)>,
     /// How many of the locked edges are locks; the others are edges of constraints.
     pub(crate) locks: usize,
-    pub(crate) flips: u64,
+    pub(crate) crossed_edges: u64,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
@@ -77,7 +77,12 @@ pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Br
         constraints: Vec::new(),
         ..before.1.clone()
     };
-    Ok(BroughtIn { before: Some(before), locks: made.locks, flips: made.flips, left_out: made.left_out })
+    Ok(BroughtIn {
+        before: Some(before),
+        locks: made.locks,
+        crossed_edges: made.crossed_edges,
+        left_out: made.left_out,
+    })
 }
 
 impl Welded {

@@ -85,9 +85,12 @@ impl Session {
     /// `Auto` the CPU takes over instead.
     pub async fn new(mesh: impl Into<Arc<Mesh>>, mut options: Options) -> Result<Self, Error> {
         options.check()?;
-        let (start, mut mesh) = (Instant::now(), mesh.into());
+        let mut mesh = mesh.into();
         let held = untangle::at_start(&mut mesh, &mut options)?;
+        let start = Instant::now();
         let constraints = locks::bring_in(&mut mesh, &mut options)?;
+        let constraints_ms = if constraints.before.is_some() { ms_since(start) } else { 0.0 };
+        let start = Instant::now();
         let Choice { engine, fallback, may_change } = first_engine(&mesh, &mut options).await?;
         let set_up = ms_since(start);
         let adjacency = engine.adjacency_ms().unwrap_or(set_up);
@@ -102,7 +105,12 @@ impl Session {
             updates: 0,
             constraints,
             held,
-            timings: Timings { upload: set_up - adjacency, adjacency, ..Timings::default() },
+            timings: Timings {
+                constraints: constraints_ms,
+                upload: set_up - adjacency,
+                adjacency,
+                ..Timings::default()
+            },
             #[cfg(all(target_arch = "wasm32", feature = "js"))]
             stays: false,
         })
@@ -243,7 +251,7 @@ impl Session {
                 remaining[reason] = frozen[reason];
             }
         }
-        let Timings { upload, adjacency, flip, .. } = self.timings;
+        let Timings { constraints, upload, adjacency, flip, .. } = self.timings;
         Ok(Outcome {
             triangles: Vec::new(),
             status: if census.labelled == 0 { Status::Done } else { Status::Stopped },
@@ -252,7 +260,7 @@ impl Session {
             fallback: self.fallback.clone(),
             iterations: self.flips_per_iteration.len() as u32,
             flips: self.flips(),
-            constraint_flips: self.constraints.flips,
+            crossed_edges: self.constraints.crossed_edges,
             constraint_edges: self.constraint_edges().to_vec(),
             left_out: self.constraints.left_out.clone(),
             lost_edges: self.held.lost.clone(),
@@ -266,7 +274,10 @@ impl Session {
             remaining,
             inverted,
             flat,
-            timings: Timings { total: upload + adjacency + flip + ms_since(start), ..self.timings },
+            timings: Timings {
+                total: constraints + upload + adjacency + flip + ms_since(start),
+                ..self.timings
+            },
         })
     }
 

@@ -55,7 +55,7 @@ pub struct Options {
     /// A number for each triangle, or empty. Edges between triangles of different numbers are locked, so every group
     /// keeps its border, and every triangle stays in its group.
     pub groups: Vec<u32>,
-    /// Edges to bring in before the run, by flips, each by its two vertices (2D only). They are locked. A vertex on one
+    /// Edges to bring in before the run, each by its two vertices (2D only). They are locked. A vertex on one
     /// splits it. See [`constrained`](crate::constrained). In the npm package, another module brings them in.
     pub constraints: Vec<[u32; 2]>,
     /// Whether constraints that cannot be brought in are left out, and listed in

@@ -55,6 +55,8 @@ pub enum Status {
 /// Wall times in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
+    /// What brought the constraints in, before the engine got the mesh.
+    pub constraints: f64,
     /// On a GPU, the time before the adjacency: checks, allocation and copies to the device; in the first session also
     /// opening the device and compiling the kernels. On the CPU, it is 0.
     pub upload: f64,
@@ -83,10 +85,10 @@ pub struct Outcome {
     pub fallback: Option<String>,
     /// Iterations with at least one flip.
     pub iterations: u32,
-    /// Flips in all, without those that brought constraints in.
+    /// Flips in all.
     pub flips: u64,
-    /// Flips that brought constraints in.
-    pub constraint_flips: u64,
+    /// How many edges the constraints crossed: each made way for another one, without a flip.
+    pub crossed_edges: u64,
     /// The edges that the constraints have become, each by its two vertices, for [`regions`](crate::regions). The
     /// constraints are in their order; the edges of one lead from its first vertex to its second.
     pub constraint_edges: Vec<[u32; 2]>,

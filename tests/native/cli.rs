@@ -37,7 +37,7 @@ const KEYS: [&str; 38] = [
     "status",
     "iterations",
     "flips",
-    "constraint_flips",
+    "crossed_edges",
     "left_out",
     "lost_edges",
     "flips_per_iteration",
@@ -60,11 +60,12 @@ const KEYS: [&str; 38] = [
 ];
 
 /// The parts of the wall time.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     "start",
     "load",
     "prepare",
     "device",
+    "constraints",
     "upload",
     "adjacency",
     "flip",

@@ -40,7 +40,7 @@ fn every_engine_goes_on_from_the_constraints() {
             }
             let any = Options { order: Order::Any, ..with(Backend::Cpu, &constraints) };
             let any = unwatched(&mesh, &any).unwrap();
-            assert_eq!((any.constraint_flips, &any.left_out), (inserted.flips, &inserted.left_out));
+            assert_eq!((any.crossed_edges, &any.left_out), (inserted.crossed_edges, &inserted.left_out));
             // Without those left out, no constraint may be missing.
             let is_in = |i: &usize| inserted.left_out.iter().all(|left| left.index != *i);
             let kept: Vec<_> = (0..constraints.len()).filter(is_in).map(|i| constraints[i]).collect();

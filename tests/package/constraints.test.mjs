@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 import { constrain, generate, regions } from 'edgeflip/files';
+import { triangulate } from 'edgeflip/points';
 
 /** The edges of triangles, each as `smaller-larger`. */
 function edgesOf(indices) {
@@ -33,14 +34,14 @@ test('a long constraint becomes a path of edges, and the rest is Delaunay', asyn
     // Two sides of a triangle at another corner.
     const t = 3 * Math.floor(mesh.indices.indexOf(Math.sqrt(last + 1) - 1) / 3);
     const locks = { lockedEdges: [t, t + 1, t + 1, t + 2].map((i) => mesh.indices[i]) };
-    const { constraintEdges, flips, leftOut } = await constrain(mesh, constraints, locks);
+    const { constraintEdges, crossedEdges, leftOut } = await constrain(mesh, constraints, locks);
     const pairs = pairsOf(constraintEdges);
     assert.deepEqual([pairs[0][0], pairs.at(-1)[1], leftOut], [0, last, []]);
     let wanted;
     for (const options of [{ threads: 1 }, { threads: 2 }, { order: 'any' }]) {
       const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, ...locks, ...options });
       const result = await session.run();
-      assert.equal(result.constraintFlips, flips);
+      assert.equal(result.crossedEdges, crossedEdges);
       assert.deepEqual([result.status, result.leftOut], ['done', []]);
       const edges = edgesOf(result.indices);
       for (const pair of pairs) assert.ok(edges.has(pair.toSorted((u, v) => u - v).join('-')), `${name}: ${pair}`);
@@ -93,8 +94,8 @@ test('a constraint joins positions if vertices are welded, and respects locks', 
   // A square whose two triangles share no vertex.
   const positions = new Float32Array([0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1]);
   const apart = { positions, indices: [0, 1, 2, 3, 4, 5], dimension: 2 };
-  const { constraintFlips, joinedVertices } = await makeDelaunay(apart, { weld: true, constraints: [1, 5] });
-  assert.deepEqual([constraintFlips, joinedVertices], [1, 2]);
+  const { crossedEdges, joinedVertices } = await makeDelaunay(apart, { weld: true, constraints: [1, 5] });
+  assert.deepEqual([crossedEdges, joinedVertices], [1, 2]);
   const given = { positions: new Float64Array([0, 0, 1, 0, 1, 1, 0, 1]), indices: [0, 1, 2, 0, 2, 3], dimension: 2 };
   const crosses = /^option constraints: constraint 0 between 1 and 3 crosses the locked edge between \d and \d$/;
   for (const locks of [{ lockedEdges: [0, 2] }, { lockedTriangles: [0] }, { groups: [0, 1] }]) {
@@ -104,6 +105,34 @@ test('a constraint joins positions if vertices are welded, and respects locks', 
     assert.match(`option constraints: ${leftOut[0].reason}`, crosses);
     assert.ok(lockedEdges.length >= 2);
   }
+});
+
+test('regions takes what a run returns, also of welded vertices', async () => {
+  // A square with a square hole. Rings repeat their first point, as in GeoJSON, and each triangle has its own vertices.
+  const ring = (low, high) => [low, low, high, low, high, high, low, high, low, low];
+  const rings = [...ring(0, 9), ...ring(3, 6)];
+  const sides = [0, 5].flatMap((first) => [0, 1, 2, 3].flatMap((k) => [first + k, first + k + 1]));
+  const { triangles } = await triangulate(rings);
+  const counted = (await regions({ positions: rings, indices: triangles, dimension: 2 }, [])).inside.length;
+  const run = async (mesh, options) => {
+    const { indices, constraintEdges, leftOut } = await makeDelaunay(mesh, { backend: 'cpu', ...options });
+    assert.deepEqual(leftOut, []);
+    const { inside, isClosed } = await regions({ ...mesh, indices }, constraintEdges);
+    assert.deepEqual([inside.length, isClosed], [counted, true]);
+    return inside.filter(Boolean).length;
+  };
+  const once = { positions: rings, indices: triangles, dimension: 2 };
+  const inside = await run(once, { weld: true, constraints: sides });
+  assert.ok(inside > 0 && inside < counted, `${inside} of ${counted}`);
+  // Second vertices at the same points, which some triangles use: only their place in the order differs.
+  const copies = rings.length / 2;
+  const turned = { positions: [...rings, ...rings], dimension: 2 };
+  const indices = [...triangles].map((vertex) => vertex + copies);
+  assert.equal(await run({ ...turned, indices }, { weld: true, constraints: sides }), inside);
+  const plain = sides.map((vertex) => (vertex === 4 ? 0 : vertex === 9 ? 5 : vertex));
+  const without = await makeDelaunay(once, { backend: 'cpu', constraints: plain });
+  assert.deepEqual([...without.constraintEdges], plain);
+  assert.equal((await makeDelaunay(once, { backend: 'cpu' })).constraintEdges.length, 0);
 });
 
 test('wrong constraints are refused', async () => {

@@ -74,7 +74,7 @@ test('the examples run', () => {
   assert.ok(Number(after) < 0.8 * Number(before));
   const map = join(folder, 'map.svg');
   const [, count] = example('map', map).match(
-    /^6818 points; \d+ flips brought the borders in; (\d+) triangles of states/,
+    /^6818 points; \d+ edges made way for the borders; (\d+) triangles of states/,
   );
   assert.equal(readFileSync(map, 'utf8').split('<path').length - 1, Number(count));
   const cells = join(folder, 'voronoi.svg');

@@ -71,8 +71,8 @@ pub struct Args {
     ///
     /// The file is replaced in one step after everything has succeeded, so a failure leaves it unchanged. Links are
     /// followed. Owner, group and mode stay, or a note says why not. A device, a FIFO or the standard output is written
-    /// into; without one of these extensions it gets the format of IN (PLY if that is CSV or XYZ), gzip'd if IN is named .gz. Another process has
-    /// to open a FIFO for reading within 10 s. --json cannot share the standard output.
+    /// into; without one of these extensions it gets the format of IN (PLY if that is CSV or XYZ), gzip'd if IN is
+    /// named .gz. Another process has to open a FIFO for reading within 10 s. --json cannot share the standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
 
@@ -86,8 +86,9 @@ pub struct Args {
 
     /// The plane of a terrain: these two coordinates decide, and the third, the height, is carried along
     ///
-    /// xy for GIS files, where z is up; xz where y is up, as in most files for games and in glTF. The mesh counts as one in
-    /// the plane: --constraints and --untangle are allowed, and a normal has no effect. The heights of OUT are those of IN.
+    /// xy for GIS files, where z is up; xz where y is up, as in most files for games and in glTF. The mesh counts as
+    /// one in the plane: --constraints and --untangle are allowed, and a normal has no effect. The heights of OUT are
+    /// those of IN.
     #[arg(long, value_enum, value_name = "PLANE")]
     pub plane: Option<PlaneArg>,
 
@@ -158,10 +159,9 @@ pub struct Args {
 
     /// Edges to bring in before the run: a text file with the two vertices of an edge in each line
     ///
-    /// Only in the plane, or with --plane. The edges that they cross flip away; then they are locked. A vertex on such an
-    /// edge splits it.
-    /// Vertices count as for --lock-edges. An edge that crosses another one of the list, a locked edge or the boundary
-    /// is an error.
+    /// Only in the plane, or with --plane. The edges that they cross make way for others; then they are locked. A
+    /// vertex on such an edge splits it. Vertices count as for --lock-edges. An edge that crosses another one of the
+    /// list, a locked edge or the boundary is an error.
     #[arg(long, value_name = "FILE")]
     pub constraints: Option<PathBuf>,
 
@@ -192,8 +192,8 @@ pub struct Args {
     /// Then edges flip even if a file repeats the vertices of each triangle, or repeats vertices along lines. In glTF,
     /// only vertices of the same primitive are joined, and edges where their attributes or morph targets differ are
     /// seams, which are locked. A primitive without indices gets indices if one of its edges flips. An edge of
-    /// --lock-edges or --constraints is that between the positions of its two vertices. The summary describes the joined
-    /// mesh, which has the first vertex at each position. Files of other formats than glTF are written as with
+    /// --lock-edges or --constraints is that between the positions of its two vertices. The summary describes the
+    /// joined mesh, which has the first vertex at each position. Files of other formats than glTF are written as with
     /// --drop-attributes.
     #[arg(long)]
     pub weld: bool,
@@ -226,25 +226,26 @@ pub struct Args {
     /// Print one JSON object on standard output instead of the summary
     ///
     /// Keys: input, vertices, triangles, edges, boundary_edges, non_manifold_edges, inconsistent_edges, dimension,
-    /// plane (xy, xz or yz; null without --plane), coordinates (32 or 64, the bits of the floats that decide), crossing_polygons (the numbers of faces, see the
-    /// notes), points (null for a mesh: heights, whether they have a third coordinate; hull, the points on it,
-    /// counter-clockwise; duplicates, each point that equals an earlier one, and that one), backend, adapter, fallback,
-    /// status (done or stopped), iterations, flips, constraint_flips, left_out (for each constraint left out, its index
-    /// in the list and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
-    /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
-    /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),
-    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles,
-    /// attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute locks; several may
-    /// lock the same edge), ms (wall times in milliseconds, see below), and with --verify audit (the violations), clean
-    /// (no violation, and no inverted triangle), remaining_edges (by reason, the two vertices of each edge left,
-    /// counted from 0), inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces
-    /// before and after).
+    /// plane (xy, xz or yz; null without --plane), coordinates (32 or 64, the bits of the floats that decide),
+    /// crossing_polygons (the numbers of faces, see the notes), points (null for a mesh: heights, whether they have a
+    /// third coordinate; hull, the points on it, counter-clockwise; duplicates, each point that equals an earlier one,
+    /// and that one), backend, adapter, fallback, status (done or stopped), iterations, flips, crossed_edges (that made
+    /// way for constraints), left_out (for each constraint left out, its index in the list and the reason), lost_edges
+    /// (the two vertices of each locked edge that --untangle could not keep), flips_per_iteration, dispatches,
+    /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
+    /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg,
+    /// min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area,
+    /// volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles, attribute_edges (locked
+    /// to keep attributes), attribute_edges_by_name (how many each attribute locks; several may lock the same edge), ms
+    /// (wall times in milliseconds, see below), and with --verify audit (the violations), clean (no violation, and no
+    /// inverted triangle), remaining_edges (by reason, the two vertices of each edge left, counted from 0),
+    /// inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
-    /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); upload;
-    /// adjacency; flip; count (triangles are read back, and the edges left are counted); measure; verify; save. The
-    /// total is the time from the start of the program to this object. After that, OUT gets its name.
+    /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); constraints
+    /// (they come in); upload; adjacency; flip; count (triangles are read back, and the edges left are counted);
+    /// measure; verify; save. The total is the time from the start of the program to this object. After that, OUT gets
+    /// its name.
     #[arg(long)]
     pub json: bool,
 

@@ -37,7 +37,7 @@ pub struct Report {
     status: &'static str,
     iterations: u32,
     flips: u64,
-    constraint_flips: u64,
+    crossed_edges: u64,
     left_out: Vec<LeftOut>,
     lost_edges: Vec<[u32; 2]>,
     flips_per_iteration: Vec<u32>,
@@ -141,6 +141,7 @@ pub struct Milliseconds {
     pub load: f64,
     pub prepare: f64,
     pub device: f64,
+    pub constraints: f64,
     pub upload: f64,
     pub adjacency: f64,
     pub flip: f64,
@@ -153,20 +154,22 @@ pub struct Milliseconds {
 
 impl Milliseconds {
     /// Adds the times of the library, rounded to microseconds.
-    pub fn of_run(&mut self, &Timings { upload, adjacency, flip, total }: &Timings) {
-        let [upload, adjacency, flip, count] =
-            [upload, adjacency, flip, total - upload - adjacency - flip].map(|ms| (ms * 1e3).round() / 1e3);
-        *self = Self { upload, adjacency, flip, count, ..mem::take(self) };
+    pub fn of_run(&mut self, &Timings { constraints, upload, adjacency, flip, total }: &Timings) {
+        let count = total - constraints - upload - adjacency - flip;
+        let [constraints, upload, adjacency, flip, count] =
+            [constraints, upload, adjacency, flip, count].map(|ms| (ms * 1e3).round() / 1e3);
+        *self = Self { constraints, upload, adjacency, flip, count, ..mem::take(self) };
     }
 
     /// The parts that were done, with their names.
     fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let &Self { start, load, prepare, device, upload, adjacency, flip, count, .. } = self;
+        let &Self { start, load, prepare, device, constraints, upload, adjacency, flip, count, .. } = self;
         let all = [
             ("start", Some(start)),
             ("load", Some(load)),
             ("prepare", Some(prepare)),
             ("device", Some(device)),
+            ("constraints", Some(constraints)),
             ("upload", Some(upload)),
             ("adjacency", Some(adjacency)),
             ("flips", Some(flip)),
@@ -212,7 +215,7 @@ impl Report {
             },
             iterations: outcome.iterations,
             flips: outcome.flips,
-            constraint_flips: outcome.constraint_flips,
+            crossed_edges: outcome.crossed_edges,
             left_out: outcome.left_out,
             lost_edges: outcome.lost_edges,
             flips_per_iteration: outcome.flips_per_iteration,
@@ -363,9 +366,9 @@ impl Report {
                 format!("{} on the device, {each:.1} bytes per triangle", HumanBytes(self.device_bytes)),
             );
         }
-        if self.constraint_flips > 0 {
-            let flips = HumanCount(self.constraint_flips);
-            line("inserted", format!("constraints, by {flips} flips"));
+        if self.crossed_edges > 0 {
+            let edges = HumanCount(self.crossed_edges);
+            line("inserted", format!("constraints, which crossed {edges} edges"));
         }
         if let Some(LeftOut { reason, .. }) = self.left_out.first() {
             line("left out", format!("constraints: {}; {reason}", HumanCount(self.left_out.len() as u64)));

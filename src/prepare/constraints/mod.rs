@@ -1,7 +1,6 @@
-//! Brings edges into a mesh in the plane. The crossed edges flip away, by exact tests. No vertex moves, and none is
-//! added.
+//! Brings edges into a mesh in the plane. The triangles that they cross make way for others, by exact tests. No vertex
+//! moves, and none is added.
 
-mod flips;
 mod insert;
 mod rounds;
 mod state;
@@ -28,8 +27,8 @@ pub struct Constrained {
     pub locked_edges: Vec<[u32; 2]>,
     /// The number of edges that were locked before. The others are in the order of the constraints.
     pub locks: usize,
-    /// The flips that brought them in.
-    pub flips: u64,
+    /// How many edges they crossed: each made way for another one.
+    pub crossed_edges: u64,
     /// The constraints that were left out, in ascending order.
     pub left_out: Vec<LeftOut>,
 }
@@ -84,10 +83,10 @@ pub fn constrained(
             edges: Vec::new(),
             left_out: Vec::new(),
         };
-        let flips = work.run(Rounds::new(constraints.len(), threads.clone()), skips);
-        (work.state.triangles, work.edges, work.left_out, flips)
+        let crossed_edges = work.run(Rounds::new(constraints.len(), threads.clone()), skips);
+        (work.state.triangles, work.edges, work.left_out, crossed_edges)
     };
-    let (triangles, mut edges, mut left_out, flips) = threads.enter(run);
+    let (triangles, mut edges, mut left_out, crossed_edges) = threads.enter(run);
     left_out.sort_by_key(|left| left.index);
     if let Some(LeftOut { reason, .. }) = left_out.first().filter(|_| !skips) {
         return refuse(reason.clone());
@@ -96,7 +95,7 @@ pub fn constrained(
     let edges = edges.into_iter().map(|(_, ends)| ends);
     let locks = locked_edges.len();
     let locked_edges = locked_edges.iter().copied().chain(edges).collect();
-    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, flips, left_out })
+    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, crossed_edges, left_out })
 }
 
 /// Each constraint from the end where fewer triangles and constraints meet: a walk begins with a search among the
@@ -122,12 +121,12 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Brings all in, or those before the first obstacle. Returns the number of flips.
+    /// Brings all in, or those before the first obstacle. Returns the number of edges that they crossed.
     fn run(&mut self, mut rounds: Rounds, skips: bool) -> u64 {
         let mut all = 0;
         while let Some(round) = rounds.next(&mut self.state, &self.directed) {
-            for Done { index, edges, flips } in round {
-                all += flips;
+            for Done { index, edges, crossed } in round {
+                all += crossed as u64;
                 match edges {
                     Ok(edges) => self.lock(index, edges),
                     Err(obstacle) => {

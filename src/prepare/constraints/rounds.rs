@@ -3,18 +3,17 @@
 //! A round takes the next constraints that wait. All are walked, which changes nothing. Those that are free come in; the
 //! others wait for the next round. A constraint is free if it and an earlier one of the round are apart: neither crosses
 //! a triangle that the other crosses, reads or has beside it. Constraints that are apart come in in any order with the
-//! same result, because flips change only triangles that the constraint crosses, and the neighbours' links to them.
+//! same result, because only triangles that a constraint crosses change, and the neighbours' links to them.
 //!
 //! The triangles that a constraint crosses cover the same region before and after. So an earlier constraint that waits
 //! stays within the triangles that it, or one before it, has claimed. It does not meet the free ones in a later round
 //! either.
 //!
-//! Where the mesh overlaps, a constraint may have several ways to go, and the edges of other places may block its flips.
+//! Where the mesh overlaps, a constraint may have several ways to go, and the edges of other places may block its ears.
 //! An earlier one may change both, if it or this one meets suspects: vertices whose stars may not be embedded. While such
 //! a constraint waits, so do all after it. The first of a round is always free, unless its walk is cut short.
 
-use super::insert::Guard;
-use super::state::State;
+use super::state::{Links, State};
 use super::walk::{Obstacle, Part, Walk, Way};
 use crate::system::threads::Threads;
 use std::collections::VecDeque;
@@ -35,12 +34,15 @@ pub(super) struct Rounds {
     threads: Threads,
 }
 
+/// The edges of a constraint, each with its two vertices and a half-edge.
+type Edges = Vec<([u32; 2], u32)>;
+
 /// A constraint that has had its turn.
 pub(super) struct Done {
     pub(super) index: usize,
-    /// Its edges, each with its two vertices and a half-edge.
-    pub(super) edges: Result<Vec<([u32; 2], u32)>, Obstacle>,
-    pub(super) flips: u64,
+    pub(super) edges: Result<Edges, Obstacle>,
+    /// The number of edges that it crossed.
+    pub(super) crossed: usize,
 }
 
 impl Rounds {
@@ -85,27 +87,38 @@ impl Rounds {
     fn bring_in(&self, state: &mut State, mut free: Vec<(usize, Walk)>) -> Vec<Done> {
         let changed: Vec<_> = free.iter_mut().map(|(_, walk)| mem::take(&mut walk.crossed)).collect();
         state.leave(changed.iter().flatten().copied());
-        let flips = state.flips();
-        let done = self.threads.map_each(free, |(index, Walk { parts, known, .. })| {
-            let (mut guard, mut all) = (known.map(Guard::new), 0);
-            let mut edge = |Part { ends, way }| match way {
-                Way::Edge(h) => Ok((ends, h)),
-                Way::Across { half_edges, sign } => {
-                    let (h, flips) = flips.bring_in(ends, half_edges, sign, guard.as_mut())?;
-                    all += flips;
-                    Ok((ends, h))
-                }
+        let links = state.links();
+        let done = self.threads.map_each(free, |(index, walk)| {
+            let (edges, crossed) = match come_in(links, walk) {
+                Ok((edges, crossed)) => (Ok(edges), crossed),
+                Err(obstacle) => (Err(obstacle), 0),
             };
-            let edges = parts.and_then(|parts| parts.into_iter().map(&mut edge).collect());
-            if let (Err(_), Some(guard)) = (&edges, guard) {
-                guard.flips.into_iter().rev().for_each(|h| flips.undo(h));
-                all = 0;
-            }
-            Done { index, edges, flips: all }
+            Done { index, edges, crossed }
         });
         state.enter(changed.iter().flatten().copied());
         done
     }
+}
+
+/// Brings a constraint in, or changes nothing. Returns its edges, and the number of edges that it crossed.
+fn come_in(links: Links, Walk { parts, mut known, .. }: Walk) -> Result<(Edges, usize), Obstacle> {
+    let parts = parts?;
+    // No part crosses a triangle of another one.
+    let ears = parts.iter().map(|part| match &part.way {
+        Way::Edge(_) => Ok(Vec::new()),
+        Way::Across(region) => links.ears(region, known.as_mut()),
+    });
+    let ears: Vec<_> = ears.collect::<Result<_, _>>()?;
+    let mut crossed = 0;
+    let edge = |(Part { ends, way }, ears): (Part, Vec<_>)| match way {
+        Way::Edge(h) => (ends, h),
+        Way::Across(region) => {
+            crossed += region.triangles.len() - 1;
+            (ends, links.fill(&region, &ears))
+        }
+    };
+    let edges = parts.into_iter().zip(ears).map(edge).collect();
+    Ok((edges, crossed))
 }
 
 /// For each triangle, the last round in which a constraint has crossed it, and the last in which one has crossed it, read

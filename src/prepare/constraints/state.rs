@@ -1,13 +1,14 @@
-//! A mesh in the plane whose edges are locked or flipped one by one.
+//! A mesh in the plane whose edges are locked, and make way for others.
 
-use super::flips::{Flips, sign};
 use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{LOCKED, lock, next, unflagged};
 use crate::mesh::star::{Fans, Star};
+use crate::predicates::area_sign;
 use crate::system::threads::{Threads, shared};
 use crate::{Adjacency, Mesh, NONE};
 use std::cmp::Ordering;
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicU32;
 
 pub(super) struct State<'a> {
     pub(super) mesh: &'a Mesh,
@@ -28,6 +29,16 @@ struct Hub {
     corner: u32,
     /// The number of its triangles.
     degree: u32,
+}
+
+/// The triangles of a mesh, and how they are joined.
+#[derive(Clone, Copy)]
+pub(super) struct Links<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) triangles: &'a [AtomicU32],
+    pub(super) twins: &'a [AtomicU32],
+    /// The table of [`Fans`](crate::mesh::star::Fans).
+    pub(super) fans: &'a [AtomicU32],
 }
 
 impl<'a> State<'a> {
@@ -51,17 +62,17 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Removes triangles from their vertices. They may then flip.
+    /// Removes triangles from their vertices. They may then make way for others.
     pub(super) fn leave(&mut self, triangles: impl IntoIterator<Item = u32>) {
         for h in triangles.into_iter().flat_map(|t| 3 * t..3 * t + 3) {
             self.hubs[self.triangles[h as usize] as usize].degree -= 1;
         }
     }
 
-    /// What flips edges.
-    pub(super) fn flips(&mut self) -> Flips<'_> {
+    /// What makes triangles of a region.
+    pub(super) fn links(&mut self) -> Links<'_> {
         let fans = self.fans.get_mut().map(|fans| fans.table.as_mut_slice()).unwrap_or_default();
-        Flips {
+        Links {
             mesh: self.mesh,
             triangles: shared(&mut self.triangles),
             twins: shared(&mut self.twins),
@@ -121,6 +132,12 @@ impl<'a> State<'a> {
     }
 
     pub(super) fn sign(&self, corners: [u32; 3]) -> Ordering {
-        sign(self.mesh, corners)
+        area(self.mesh, corners)
     }
+}
+
+/// The sign of the area of a triangle.
+pub(super) fn area(mesh: &Mesh, corners: [u32; 3]) -> Ordering {
+    let [a, b, c] = corners.map(|v| mesh.point2(v));
+    area_sign(a, b, c)
 }

@@ -1,4 +1,4 @@
-//! Follows a constraint through the mesh, before anything flips.
+//! Follows a constraint through the mesh, before anything changes.
 
 use super::state::State;
 use crate::NONE;
@@ -17,13 +17,20 @@ pub(super) struct Part {
 pub(super) enum Way {
     /// It is the edge of this half-edge.
     Edge(u32),
-    /// It crosses the edges of these half-edges. They are in the order from its first end to its second, and each
-    /// belongs to the triangle that the part leaves.
-    Across {
-        half_edges: Vec<u32>,
-        /// The sign of all triangles that it crosses.
-        sign: Ordering,
-    },
+    /// It crosses the triangles of a region.
+    Across(Region),
+}
+
+/// The triangles that a part crosses.
+pub(super) struct Region {
+    pub(super) triangles: Vec<u32>,
+    /// The half-edges around them: those on the right of the part from its first end to its second, then those on the left
+    /// back to the first.
+    pub(super) sides: Vec<u32>,
+    /// The number of the side that starts at the second end.
+    pub(super) second: usize,
+    /// The sign of all its triangles, and of a triangle of the part and a vertex on its left.
+    pub(super) sign: Ordering,
 }
 
 /// A constraint in the present mesh.
@@ -36,7 +43,8 @@ pub(super) struct Walk {
     /// Its ends, and the vertices that it passes or whose edges it crosses, as far as their stars are not known to be
     /// embedded. Up to the obstacle, perhaps repeated.
     pub(super) suspects: Vec<u32>,
-    /// If there are several suspects: the edges between them. A flip must not make such an edge again.
+    /// If there are suspects and the constraint crosses triangles: the edges between suspects. It must not make such an
+    /// edge again.
     pub(super) known: Option<HashSet<[u32; 2]>>,
 }
 
@@ -59,7 +67,7 @@ pub(super) enum Obstacle {
     Folded(u32),
     /// It comes to the point of this vertex, its second end, in triangles that do not have the vertex.
     Covered(u32),
-    /// The flips that bring it in would make this edge, which the mesh has elsewhere.
+    /// It would come in with this edge, which the mesh has elsewhere.
     Doubled([u32; 2]),
 }
 
@@ -97,13 +105,13 @@ impl State<'_> {
         walk.check(most).is_ok().then_some(walk)
     }
 
-    /// Finds the edges between suspects, if the constraint needs flips.
+    /// Finds the edges between suspects, if the constraint crosses triangles.
     fn find_known(&self, walk: &mut Walk) {
         let Walk { parts, suspects, known, around, .. } = walk;
         suspects.sort_unstable();
         suspects.dedup();
-        let is_across = |part: &Part| matches!(part.way, Way::Across { .. });
-        if suspects.len() > 1 && parts.as_ref().is_ok_and(|parts| parts.iter().any(is_across)) {
+        let is_across = |part: &Part| matches!(part.way, Way::Across(_));
+        if !suspects.is_empty() && parts.as_ref().is_ok_and(|parts| parts.iter().any(is_across)) {
             let known = known.insert(HashSet::new());
             // Each edge is found at both ends, so the largest star need not be searched.
             let largest = suspects.iter().copied().max_by_key(|&v| self.degree(v));
@@ -155,7 +163,8 @@ impl State<'_> {
             return Err(Some(obstacle));
         }
         let (mut h, sign) = start.ok_or(Some(Obstacle::Leaves(at)))?;
-        let mut half_edges = Vec::new();
+        let (mut right, mut left) = (vec![prev(h)], vec![next(h)]);
+        let first = walk.crossed.len();
         walk.crossed.push(h / 3);
         self.ends(h).into_iter().for_each(|v| self.suspect(walk, v));
         loop {
@@ -171,7 +180,6 @@ impl State<'_> {
             if self.is_locked(h) {
                 return stopped(Obstacle::Locked(h));
             }
-            half_edges.push(h);
             let g = self.twin(h);
             walk.crossed.push(g / 3);
             walk.check(most)?;
@@ -181,10 +189,21 @@ impl State<'_> {
                 return stopped(Obstacle::Folded(g / 3));
             }
             let side = side(far);
-            if self.is_passed(far, side, [at, to])? {
-                return Ok(Part { ends: [at, far], way: Way::Across { half_edges, sign } });
+            let is_end = self.is_passed(far, side, [at, to])?;
+            let is_left = side == sign;
+            if is_end || !is_left {
+                right.push(next(g));
             }
-            h = if side == sign { next(g) } else { prev(g) };
+            if is_end || is_left {
+                left.push(prev(g));
+            }
+            if is_end {
+                let (triangles, second) = (walk.crossed[first..].to_vec(), right.len());
+                let sides = right.into_iter().chain(left.into_iter().rev()).collect();
+                let region = Region { triangles, sides, second, sign };
+                return Ok(Part { ends: [at, far], way: Way::Across(region) });
+            }
+            h = if is_left { next(g) } else { prev(g) };
         }
     }
 

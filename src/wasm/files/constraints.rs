@@ -48,12 +48,12 @@ pub fn constrain(
     };
     let result = work().map_err(thrown)?;
     let constraint_edges = Uint32Array::from(result.constraint_edges().as_flattened());
-    let Constrained { mesh, locked_edges, flips, left_out, .. } = result;
+    let Constrained { mesh, locked_edges, crossed_edges, left_out, .. } = result;
     Ok(object([
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("lockedEdges", Uint32Array::from(locked_edges.as_flattened()).into()),
         ("constraintEdges", constraint_edges.into()),
-        ("flips", (flips as f64).into()),
+        ("crossedEdges", (crossed_edges as f64).into()),
         ("leftOut", left_out_list(&left_out)),
     ]))
 }

@@ -17,13 +17,13 @@ fn constraints_are_brought_in() {
         serde_json::from_slice(&ran.stdout).unwrap()
     };
     let found = said(&[]);
-    assert_eq!((&found["constraint_flips"], &found["flips"]), (&1.into(), &0.into()));
+    assert_eq!((&found["crossed_edges"], &found["flips"]), (&1.into(), &0.into()));
     assert_eq!(
         (&found["left_out"], &found["audit"], &found["remaining"]),
         (&json!([]), &json!([]), &json!({}))
     );
     assert!(fs::read_to_string(&output).unwrap().contains("\n3 3 1 2\n"));
-    assert!(text(&with(&[]).stderr).contains("\ninserted   constraints, by 1 flips\n"));
+    assert!(text(&with(&[]).stderr).contains("\ninserted   constraints, which crossed 1 edges\n"));
 
     fs::remove_file(&output).unwrap();
     fs::write(&list, "1 3\n0 2\n").unwrap();
