@@ -9,7 +9,7 @@ mod points_of;
 
 use edgeflip::{
     Backend, Dimension, Edges, Mesh, Options, Order, PointOptions, PointSession, Positions, Session,
-    families::by_name, triangulate_with,
+    families::by_name, triangulate, triangulate_with,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::num::NonZeroUsize;
@@ -163,11 +163,36 @@ fn points_take_what_they_ask_for() {
     assert!(most.iter().all(|&most| most > 0.8), "far more is asked for than is ever taken: {most:?}");
 }
 
+/// A row of points up to 20 beside a line, and that line as a constraint: it crosses most of the triangles.
+fn a_long_constraint_takes_what_it_asks_for() {
+    let count = 20_000u32;
+    // A sequence without order.
+    let height =
+        |i: u32| f64::from(i.wrapping_mul(2_654_435_769) >> 12) / f64::from(1u32 << 20) * 40.0 - 20.0;
+    let mut points: Vec<f64> = (0..count).flat_map(|i| [f64::from(i), height(i)]).collect();
+    points[1] = 0.0;
+    *points.last_mut().unwrap() = 0.0;
+    let triangles = triangulate(&points.clone().into()).unwrap().triangles;
+    let mesh = Arc::new(Mesh::new(Dimension::Two, points, triangles).unwrap());
+    for threads in [1, 4] {
+        let options = Options {
+            backend: Backend::Cpu,
+            threads: NonZeroUsize::new(threads),
+            constraints: vec![[0, count - 1]],
+            ..Options::default()
+        };
+        let asked = Session::bytes(&mesh, &options);
+        let taken = bytes_of(&mesh, options, asked);
+        assert!(taken <= asked + SLACK, "{threads} threads: {taken} bytes taken, {asked} asked for");
+    }
+}
+
 /// One test, since the program has only one peak.
 #[test]
 fn sessions_take_what_they_ask_for() {
     moves_take_what_they_ask_for();
     points_take_what_they_ask_for();
+    a_long_constraint_takes_what_it_asks_for();
     let mut most = 0.0f64;
     for spec in [
         "random 120",
