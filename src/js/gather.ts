@@ -61,8 +61,8 @@ export function sourceOf(options: UpdateOptions, places: AllPlaces): Source {
 }
 
 /**
- * Submits the copy of these numbers of each vertex, or of so many. Errors are those of the device: a buffer of another device, or
- * without the usage.
+ * Submits the copy of these numbers of each vertex, or of so many. Errors are those of the device: a buffer of another
+ * device, or without the usage.
  */
 export function copyTo(
   device: GpuDevice,

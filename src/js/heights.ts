@@ -67,7 +67,10 @@ export class Heights {
 
   /** Rounds doubles, as the engine does. */
   #write(): void {
-    if (this.#buffer) this.#device?.queue.writeBuffer(this.#buffer, 0, Float32Array.from(this.#positions));
+    if (!this.#buffer) return;
+    const numbers = this.#positions;
+    const floats = numbers instanceof Float32Array ? numbers : new Float32Array(numbers);
+    this.#device?.queue.writeBuffer(this.#buffer, 0, floats as Float32Array<ArrayBuffer>);
   }
 }
 
