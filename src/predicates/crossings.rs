@@ -80,12 +80,7 @@ fn side(first: Segment, second: Segment, axis: usize, at: f64) -> Ordering {
 }
 
 /// The coordinate of the crossing less a number: a numerator, a denominator, and the exponent of their unit.
-fn from_line(
-    [a, b]: Segment,
-    [c, d]: Segment,
-    axis: usize,
-    at: f64,
-) -> (Unbounded, Unbounded, i32) {
+fn from_line([a, b]: Segment, [c, d]: Segment, axis: usize, at: f64) -> (Unbounded, Unbounded, i32) {
     let differences = Differences::new([
         (b.x, a.x),
         (b.y, a.y),

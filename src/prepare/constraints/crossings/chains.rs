@@ -5,6 +5,7 @@ use crate::system::memory;
 use crate::{Error, NONE};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::iter::successors;
 use std::mem;
 
 /// A vertex of a chain.
@@ -64,11 +65,6 @@ impl Chains {
         Ok(())
     }
 
-    /// Takes the chain of a line away.
-    pub(super) fn leave_out(&mut self, line: u32) {
-        self.first[line as usize] = NONE;
-    }
-
     /// The present line goes on along an edge to a vertex.
     pub(super) fn extend(&mut self, vertex: u32) -> Result<(), Error> {
         self.reserve(1)?;
@@ -112,7 +108,7 @@ impl Chains {
     fn along(&self, ends: [u32; 2]) -> impl Iterator<Item = u32> {
         let first = self.edges.get(&ordered(ends)).map_or(NONE, |edge| edge.links);
         let present = |link: u32| (link != NONE).then_some(link);
-        std::iter::successors(present(first), move |&link| present(self.links[link as usize].beside))
+        successors(present(first), move |&link| present(self.links[link as usize].beside))
     }
 
     /// The first line that passes an edge.
@@ -137,24 +133,12 @@ impl Chains {
         Ok(())
     }
 
-    /// The vertices of a chain, without loops; empty if the line was left out. `name` gives each vertex its number.
-    /// `seen` has a number for each of these; it is 0 for all of them before and after.
-    pub(super) fn path(&self, line: usize, name: impl Fn(u32) -> u32, seen: &mut [u32]) -> Vec<u32> {
-        let mut path = Vec::new();
-        let mut link = self.first[line];
-        while link != NONE {
-            let Link { vertex, after, .. } = self.links[link as usize];
-            let vertex = name(vertex);
-            match seen[vertex as usize] {
-                0 => {
-                    path.push(vertex);
-                    seen[vertex as usize] = path.len() as u32;
-                }
-                length => path.drain(length as usize..).for_each(|v: u32| seen[v as usize] = 0),
-            }
-            link = after;
-        }
-        path.iter().for_each(|&v| seen[v as usize] = 0);
+    /// The vertices of a chain; none if the line was left out. `name` gives each vertex its number.
+    pub(super) fn path(&self, line: usize, name: impl Fn(u32) -> u32) -> Vec<u32> {
+        let present = |link: u32| (link != NONE).then_some(link);
+        let links = successors(present(self.first[line]), |&link| present(self.links[link as usize].after));
+        let mut path: Vec<u32> = links.map(|link| name(self.links[link as usize].vertex)).collect();
+        path.dedup();
         path
     }
 }

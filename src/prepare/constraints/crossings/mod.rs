@@ -36,6 +36,7 @@
 //! which is an error.
 
 mod chains;
+mod meeting;
 mod net;
 mod reach;
 mod splitter;
@@ -45,13 +46,11 @@ mod taut;
 mod tests;
 
 use super::walk::Obstacle;
-use crate::mesh::half_edge::next;
 use crate::mesh::named_edges::{LeftOut, half_edges, ordered};
 use crate::predicates::distance_from_segment;
 use crate::system::memory;
 use crate::{Adjacency, Dimension, Error, Mesh, Plane, Positions};
 use chains::Chains;
-use glam::DVec2;
 use net::Net;
 use splitter::Splitter;
 
@@ -61,6 +60,7 @@ pub struct SplitCrossings {
     /// The mesh: its vertices, and the new ones after them.
     pub mesh: Mesh,
     /// For each constraint, the vertices of its path of edges from its first end to its second. Empty if it was left out.
+    /// Of lines that are nearly parallel, a chain may come to a vertex twice: only so it passes others on the right side.
     pub chains: Vec<Vec<u32>>,
     /// The new vertices, in their order.
     pub crossings: Vec<Crossing>,
@@ -101,7 +101,8 @@ impl SplitCrossings {
         let mut all = numbers.to_vec();
         for &Crossing { between, at, .. } in &self.crossings {
             for i in 0..width {
-                let [x, y] = between.map(|v| numbers.get(v as usize * width + i).copied().unwrap_or(f64::NAN));
+                let [x, y] =
+                    between.map(|v| numbers.get(v as usize * width + i).copied().unwrap_or(f64::NAN));
                 all.push(x + at * (y - x));
             }
         }
@@ -197,9 +198,8 @@ pub(crate) fn split_in(
         }
     }
     let Splitter { net, chains, crossings, .. } = splitter;
-    let mut seen = vec![0; mesh.vertex_count() + crossings.len()];
     let paths = constraints.iter().enumerate().map(|(line, [from, _])| {
-        let mut path = chains.path(line, |v| net.original(v), &mut seen);
+        let mut path = chains.path(line, |v| net.original(v));
         if path.first() != Some(from) {
             path.reverse();
         }
@@ -255,8 +255,7 @@ fn placed(
     crossings: Vec<[u32; 2]>,
 ) -> Vec<Crossing> {
     let given = mesh.vertex_count() as u32;
-    let mut between: Vec<[u32; 2]> =
-        crossings.iter().map(|&[line, _]| constraints[line as usize]).collect();
+    let mut between: Vec<[u32; 2]> = crossings.iter().map(|&[line, _]| constraints[line as usize]).collect();
     let mut is_placed = vec![false; crossings.len()];
     for chain in chains {
         let (mut before, mut new) = (None, Vec::new());

@@ -89,9 +89,7 @@ impl Net {
     pub(super) fn original(&self, v: u32) -> u32 {
         match v.checked_sub(self.given) {
             None => v,
-            Some(i) => {
-                self.copies.get(i as usize).copied().unwrap_or(v - self.copies.len() as u32)
-            }
+            Some(i) => self.copies.get(i as usize).copied().unwrap_or(v - self.copies.len() as u32),
         }
     }
 
@@ -99,7 +97,8 @@ impl Net {
     pub(super) fn all(&self, v: u32) -> impl Iterator<Item = u32> {
         let range = match v < self.given {
             true => {
-                self.copies.partition_point(|&w| w < v) as u32..self.copies.partition_point(|&w| w <= v) as u32
+                self.copies.partition_point(|&w| w < v) as u32
+                    ..self.copies.partition_point(|&w| w <= v) as u32
             }
             false => 0..0,
         };

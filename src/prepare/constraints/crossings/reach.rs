@@ -16,7 +16,7 @@ pub(super) enum Seen {
     On(u32),
     /// This vertex is before the point.
     Before(u32),
-    /// This half-edge of an edge of chains is before the point. It belongs to the triangle behind the edge.
+    /// This half-edge of an edge of chains is before the point. It belongs to the triangle before the edge.
     Behind(u32),
     /// Something that has to stay as it is, or triangles that overlap.
     Nothing,
@@ -43,15 +43,14 @@ impl Net {
                 return Seen::Before(far);
             }
             let mut crossed = None;
-            for (is_candidate, side, [from, to]) in
-                [(beyond_x, next(h), [q, r]), (beyond_y, prev(h), [r, p])]
+            for (is_candidate, side, [from, to]) in [(beyond_x, next(h), [q, r]), (beyond_y, prev(h), [r, p])]
             {
                 let turn = self.turn(from, to, point);
                 if !is_candidate || turn.is_gt() {
                     continue;
                 }
-                let is_free = self.twin(side) != NONE
-                    && (!self.is_locked(side) || chains.may_change(self.ends(side)));
+                let is_free =
+                    self.twin(side) != NONE && (!self.is_locked(side) || chains.may_change(self.ends(side)));
                 if !is_free {
                     return Seen::Nothing;
                 }
@@ -61,10 +60,10 @@ impl Net {
                 crossed = Some(side);
             }
             let Some(side) = crossed else { return Seen::Inside(h) };
-            h = self.twin(side);
             if self.is_locked(side) {
-                return Seen::Behind(h);
+                return Seen::Behind(side);
             }
+            h = self.twin(side);
         }
     }
 }

@@ -2,38 +2,38 @@
 
 use super::chains::Chains;
 use super::net::Net;
-use super::reach::Seen;
 use super::straight::{Part, Start, Way};
 use super::taut::{Gate, taut};
 use crate::mesh::half_edge::{next, prev};
-use crate::predicates::{Segment, line_crossing};
+use crate::predicates::Segment;
 use crate::prepare::constraints::walk::Obstacle;
 use crate::{Error, NONE};
 use glam::DVec2;
-use std::array;
 use std::cmp::Ordering;
 
 pub(super) struct Splitter {
     pub(super) net: Net,
     pub(super) chains: Chains,
     /// The ends of each line.
-    lines: Vec<[u32; 2]>,
+    pub(super) lines: Vec<[u32; 2]>,
     /// The two lines of each new vertex.
     pub(super) crossings: Vec<[u32; 2]>,
 }
 
 /// A line on its way.
-struct Front {
-    line: u32,
-    ends: Segment,
+pub(super) struct Front {
+    pub(super) line: u32,
+    pub(super) ends: Segment,
     /// The last vertex of its chain.
-    at: u32,
+    pub(super) at: u32,
+    /// The vertices of its chain.
+    pub(super) passed: Vec<u32>,
     /// The edges that it has crossed since, each by the half-edge of the triangle that it has left.
-    gates: Vec<u32>,
+    pub(super) gates: Vec<u32>,
 }
 
 /// How a line goes on after a locked edge.
-enum After {
+pub(super) enum After {
     /// Across it, since the chains of that edge now pass a vertex behind it.
     Across,
     /// From the last vertex of its chain, which it does not pass exactly, into the triangle of this half-edge.
@@ -48,7 +48,11 @@ impl Splitter {
     }
 
     /// Brings a line in, from the first of its ends to the second. The inner error says what keeps it out.
-    pub(super) fn bring_in(&mut self, line: u32, [from, to]: [u32; 2]) -> Result<Result<(), Obstacle>, Error> {
+    pub(super) fn bring_in(
+        &mut self,
+        line: u32,
+        [from, to]: [u32; 2],
+    ) -> Result<Result<(), Obstacle>, Error> {
         if from == to {
             return Ok(Err(Obstacle::SameVertex));
         }
@@ -59,7 +63,7 @@ impl Splitter {
         self.chains.begin(line, from)?;
         if crosses {
             let ends = [from, to].map(|v| self.net.point(v));
-            self.thread(to, Front { line, ends, at: from, gates: Vec::new() })?;
+            self.thread(to, Front { line, ends, at: from, passed: vec![from], gates: Vec::new() })?;
             return Ok(Ok(()));
         }
         for Part { ends: [from, to], way } in parts {
@@ -82,6 +86,7 @@ impl Splitter {
                 Start::Edge(h, ends) => {
                     self.go_along(h, ends)?;
                     front.at = ends[1];
+                    front.passed.push(front.at);
                     continue;
                 }
                 Start::Triangle(h, start, sign) => {
@@ -125,169 +130,30 @@ impl Splitter {
     }
 
     /// The side of the line on which a point is: greater on the left.
-    fn side(&self, front: &Front, point: DVec2) -> Ordering {
+    pub(super) fn side(&self, front: &Front, point: DVec2) -> Ordering {
         self.net.turn(front.ends[0], front.ends[1], point)
     }
 
-    /// Crosses the locked edge of `h`, from its triangle.
-    fn cross(&mut self, h: u32, front: &mut Front) -> Result<After, Error> {
-        let (g, [a, b]) = (self.net.twin(h), self.net.ends(h));
-        let [p, q] = [a, b].map(|v| self.net.point(v));
-        let other = self.chains.first_line([a, b]).unwrap_or(front.line);
-        let lines = [other, front.line];
-        for point in self.candidates(front, [p, q], other) {
-            if point == p || point == q {
-                self.go_to(if point == p { a } else { b }, h, front)?;
-                return Ok(After::Into(g));
-            }
-            match self.net.turn(p, q, point) {
-                Ordering::Equal if is_between(point, [p, q]) => {
-                    let (vertex, [_, other_half]) = self.insert_on(h, point, lines)?;
-                    self.go_to(vertex, h, front)?;
-                    // Which half of the edge the line crosses, seen from behind the edge.
-                    return Ok(match self.side(front, point) {
-                        Ordering::Less => After::Into(g),
-                        Ordering::Equal => After::On,
-                        Ordering::Greater => After::Into(other_half),
-                    });
-                }
-                Ordering::Equal => {}
-                Ordering::Greater => {
-                    let apex = self.net.apex(h);
-                    let r = self.net.point(apex);
-                    let vertex = if point == r {
-                        apex
-                    } else if self.net.turn(q, r, point).is_gt() && self.net.turn(r, p, point).is_gt() {
-                        self.insert_inside(h, point, lines)?
-                    } else {
-                        continue;
-                    };
-                    self.lead(h, vertex)?;
-                    self.go_to(vertex, h, front)?;
-                    front.gates.push(h);
-                    return Ok(After::Into(g));
-                }
-                Ordering::Less => match self.reach(g, point, lines, front)? {
-                    None => {}
-                    Some(vertex) if self.net.point(vertex) != point => {
-                        front.gates.push(h);
-                        return Ok(After::Across);
-                    }
-                    Some(vertex) => {
-                        front.gates.push(h);
-                        let side = self.side(front, point);
-                        let behind = self.net.twin(if side.is_gt() { next(g) } else { prev(g) });
-                        self.go_to(vertex, g, front)?;
-                        return Ok(if side.is_eq() { After::On } else { After::Into(behind) });
-                    }
-                },
-            }
-        }
-        let [first, second] = [p, q].map(|v| (front.ends[1] - front.ends[0]).perp_dot(v - front.ends[0]).abs());
-        self.go_to(if first < second { a } else { b }, h, front)?;
-        Ok(After::Into(g))
-    }
-
-    /// Points for the crossing of the line with an edge of another line: first that of the two lines, as they were given,
-    /// or if it is not next to it that of the line and the edge; then its neighbours.
-    fn candidates(&self, front: &Front, edge: Segment, other: u32) -> [DVec2; 9] {
-        let is_double = self.net.is_double();
-        let near = line_crossing(front.ends, edge, is_double);
-        let size = near.abs().max_element();
-        let step = if is_double {
-            size.next_up() - size
-        } else {
-            let size = size as f32;
-            (size.next_up() - size).into()
-        };
-        let whole = self.lines[other as usize].map(|v| self.net.point(v));
-        let crossing = line_crossing(front.ends, whole, is_double);
-        let is_near = (crossing - near).abs().max_element() <= 2.0 * step;
-        let centre = if is_near { crossing } else { near };
-        const STEPS: [[f64; 2]; 9] = [
-            [0.0, 0.0],
-            [1.0, 0.0],
-            [-1.0, 0.0],
-            [0.0, 1.0],
-            [0.0, -1.0],
-            [1.0, 1.0],
-            [-1.0, -1.0],
-            [1.0, -1.0],
-            [-1.0, 1.0],
-        ];
-        STEPS.map(|steps| {
-            let moved = centre + step * DVec2::from_array(steps);
-            if is_double { moved } else { moved.as_vec2().as_dvec2() }
-        })
-    }
-
-    /// Leads the chains of the edge of `g` through a vertex on its left: one at the point, or one that is before the point.
-    /// `None` if something that has to stay is before the point.
-    fn reach(
-        &mut self,
-        g: u32,
-        point: DVec2,
-        lines: [u32; 2],
-        front: &Front,
-    ) -> Result<Option<u32>, Error> {
-        if !point.is_finite() {
-            return Ok(None);
-        }
-        let mut e = g;
-        loop {
-            let seen = self.net.look(e, point, &self.chains);
-            let target = match seen {
-                Seen::Nothing => return Ok(None),
-                Seen::Behind(behind) => {
-                    e = behind;
-                    continue;
-                }
-                Seen::Before(vertex) | Seen::Vertex(vertex) => self.net.point(vertex),
-                Seen::Inside(_) | Seen::On(_) => point,
-            };
-            if e != g && self.would_cross(front, e, target) {
-                return Ok(None);
-            }
-            let vertex = match seen {
-                Seen::Inside(h) => self.insert_inside(h, point, lines)?,
-                Seen::On(h) => self.insert_on(h, point, lines)?.0,
-                Seen::Before(vertex) | Seen::Vertex(vertex) => vertex,
-                Seen::Nothing | Seen::Behind(_) => return Ok(None),
-            };
-            self.lead(e, vertex)?;
-            if e == g {
-                return Ok(Some(vertex));
-            }
-            e = g;
-        }
-    }
-
-    /// Whether the chains of an edge that the line does not cross would cross it if they passed a point.
-    fn would_cross(&self, front: &Front, e: u32, point: DVec2) -> bool {
-        let [p, q] = self.net.ends(e).map(|v| self.side(front, self.net.point(v)));
-        let side = self.side(front, point);
-        let is_crossed = p.is_ne() && p == q.reverse();
-        !is_crossed && side.is_ne() && (p == side.reverse() || q == side.reverse())
-    }
-
-    /// Leads the chains of the edge of `e` through a vertex on its left instead: nothing is in the triangle of both.
-    fn lead(&mut self, e: u32, vertex: u32) -> Result<(), Error> {
-        let ends = self.net.ends(e);
-        if self.net.apex(e) != vertex {
+    /// Leads the chains of the edge of `h` through a vertex on its right instead: nothing is in the triangle of both.
+    pub(super) fn lead(&mut self, h: u32, vertex: u32) -> Result<(), Error> {
+        let ends = self.net.ends(h);
+        if self.net.apex(self.net.twin(h)) != vertex {
             for end in ends {
                 let (mut parts, crosses) =
                     self.net.straight([vertex, end], |_| true).map_err(|_| overlaps())?;
                 match parts.pop() {
+                    Some(Part { way: Way::Edge(_), .. }) if parts.is_empty() => {}
                     Some(Part { ends, way: Way::Across(half_edges, _) }) if parts.is_empty() && !crosses => {
                         self.net.bring_in(ends, half_edges).ok_or_else(overlaps)?;
                     }
-                    Some(Part { way: Way::Edge(_), .. }) if parts.is_empty() => {}
                     _ => return Err(overlaps()),
                 }
             }
-            if self.net.apex(e) != vertex {
-                return Err(overlaps());
-            }
+        }
+        // Flips have moved the half-edge.
+        let e = self.net.twin(h);
+        if self.net.apex(e) != vertex {
+            return Err(overlaps());
         }
         self.net.set_locked(e, false);
         self.net.set_locked(next(e), true);
@@ -295,14 +161,19 @@ impl Splitter {
         self.chains.split(ends, vertex)
     }
 
-    fn insert_inside(&mut self, h: u32, point: DVec2, lines: [u32; 2]) -> Result<u32, Error> {
+    pub(super) fn insert_inside(&mut self, h: u32, point: DVec2, lines: [u32; 2]) -> Result<u32, Error> {
         self.net.reserve_vertex()?;
         self.crossings.push(lines);
         Ok(self.net.insert_inside(h, point))
     }
 
     /// Adds a vertex on an edge, and to the chains that pass the edge.
-    fn insert_on(&mut self, h: u32, point: DVec2, lines: [u32; 2]) -> Result<(u32, [u32; 2]), Error> {
+    pub(super) fn insert_on(
+        &mut self,
+        h: u32,
+        point: DVec2,
+        lines: [u32; 2],
+    ) -> Result<(u32, [u32; 2]), Error> {
         self.net.reserve_vertex()?;
         self.crossings.push(lines);
         let (ends, is_locked) = (self.net.ends(h), self.net.is_locked(h));
@@ -315,9 +186,10 @@ impl Splitter {
 
     /// Leads the chain of the line to a vertex: by the shortest path between the ends of the edges that the line has
     /// crossed. `h` is a half-edge of a triangle of the vertex, also of the last one of the chain if no edge was crossed.
-    fn go_to(&mut self, vertex: u32, h: u32, front: &mut Front) -> Result<(), Error> {
+    pub(super) fn go_to(&mut self, vertex: u32, h: u32, front: &mut Front) -> Result<(), Error> {
         let gates = std::mem::take(&mut front.gates);
         let at = std::mem::replace(&mut front.at, vertex);
+        front.passed.push(vertex);
         if at == vertex {
             return Ok(());
         }
@@ -348,9 +220,7 @@ impl Splitter {
             for Part { ends, way } in parts {
                 let side = match way {
                     Way::Edge(side) => side,
-                    Way::Across(half_edges, _) => {
-                        self.net.bring_in(ends, half_edges).ok_or_else(overlaps)?
-                    }
+                    Way::Across(half_edges, _) => self.net.bring_in(ends, half_edges).ok_or_else(overlaps)?,
                 };
                 self.go_along(side, ends)?;
             }
@@ -367,14 +237,7 @@ impl Splitter {
     }
 }
 
-/// Whether a point on the line through two points is between them.
-fn is_between(point: DVec2, [p, q]: Segment) -> bool {
-    array::from_fn::<_, 2, _>(|axis| (p[axis].min(q[axis]), point[axis], p[axis].max(q[axis])))
-        .into_iter()
-        .all(|(low, x, high)| low <= x && x <= high)
-}
-
-fn overlaps() -> Error {
+pub(super) fn overlaps() -> Error {
     let message = "the mesh overlaps itself where constraints cross; --untangle may mend it".to_owned();
     Error::Option { option: "constraints", message }
 }
