@@ -3,7 +3,7 @@
 mod cells;
 mod constraints;
 mod long;
-mod oracle;
+pub mod oracle;
 mod session;
 mod threads;
 mod voronoi;

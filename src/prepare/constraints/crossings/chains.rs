@@ -5,6 +5,7 @@ use crate::system::memory;
 use crate::{Error, NONE};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::iter::successors;
 use std::mem;
 
@@ -26,9 +27,35 @@ struct Edge {
     is_fixed: bool,
 }
 
+/// A hash of two vertices. The standard one is made for keys that an attacker chooses, and takes several times as long.
+#[derive(Default)]
+struct PairHasher(u64);
+
+impl Hasher for PairHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(byte.into()));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        // Knuth's multiplicative hash. The table takes the lowest and the highest bits.
+        let product = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = product ^ product >> 32;
+    }
+}
+
+/// The two vertices of an edge in one number.
+fn key(ends: [u32; 2]) -> u64 {
+    let [u, v] = ordered(ends);
+    u64::from(u) << 32 | u64::from(v)
+}
+
 pub(super) struct Chains {
     links: Vec<Link>,
-    edges: HashMap<[u32; 2], Edge>,
+    edges: HashMap<u64, Edge, BuildHasherDefault<PairHasher>>,
     /// The first link of each line, or [`NONE`].
     first: Vec<u32>,
     /// The last link of the present line.
@@ -37,7 +64,7 @@ pub(super) struct Chains {
 
 impl Chains {
     pub(super) fn new(lines: usize, fixed: impl Iterator<Item = [u32; 2]>) -> Self {
-        let fixed = fixed.map(|ends| (ordered(ends), Edge { links: NONE, is_fixed: true }));
+        let fixed = fixed.map(|ends| (key(ends), Edge { links: NONE, is_fixed: true }));
         Self { links: Vec::new(), edges: fixed.collect(), first: vec![NONE; lines], last: NONE }
     }
 
@@ -49,7 +76,7 @@ impl Chains {
         if self.links.capacity() - self.links.len() < more || self.edges.capacity() - self.edges.len() < 2 {
             let links = (2 * self.links.capacity()).max(self.links.len() + more);
             let edges = 4 * self.edges.capacity() + 16;
-            memory::check((links * size_of::<Link>() + edges * size_of::<([u32; 2], Edge)>()) as u64)?;
+            memory::check((links * size_of::<Link>() + edges * size_of::<(u64, Edge)>()) as u64)?;
             self.links.reserve(more);
             self.edges.reserve(2);
         }
@@ -93,7 +120,7 @@ impl Chains {
 
     /// Notes that a chain goes along an edge from a link.
     fn add(&mut self, ends: [u32; 2], link: u32) {
-        let edge = match self.edges.entry(ordered(ends)) {
+        let edge = match self.edges.entry(key(ends)) {
             Entry::Occupied(entry) => entry.into_mut(),
             Entry::Vacant(entry) => entry.insert(Edge { links: NONE, is_fixed: false }),
         };
@@ -102,11 +129,11 @@ impl Chains {
 
     /// Whether an edge is one of chains only, so that it may change.
     pub(super) fn may_change(&self, ends: [u32; 2]) -> bool {
-        self.edges.get(&ordered(ends)).is_some_and(|edge| !edge.is_fixed)
+        self.edges.get(&key(ends)).is_some_and(|edge| !edge.is_fixed)
     }
 
     fn along(&self, ends: [u32; 2]) -> impl Iterator<Item = u32> {
-        let first = self.edges.get(&ordered(ends)).map_or(NONE, |edge| edge.links);
+        let first = self.edges.get(&key(ends)).map_or(NONE, |edge| edge.links);
         let present = |link: u32| (link != NONE).then_some(link);
         successors(present(first), move |&link| present(self.links[link as usize].beside))
     }
@@ -120,7 +147,7 @@ impl Chains {
     pub(super) fn split(&mut self, ends: [u32; 2], vertex: u32) -> Result<(), Error> {
         let links: Vec<u32> = self.along(ends).collect();
         self.reserve(links.len())?;
-        self.edges.remove(&ordered(ends));
+        self.edges.remove(&key(ends));
         for from in links {
             let Link { vertex: at, after, line, .. } = self.links[from as usize];
             let middle = self.links.len() as u32;

@@ -49,7 +49,7 @@ use super::walk::Obstacle;
 use crate::mesh::named_edges::{LeftOut, half_edges, ordered};
 use crate::predicates::distance_from_segment;
 use crate::system::memory;
-use crate::{Adjacency, Dimension, Error, Mesh, Plane, Positions};
+use crate::{Dimension, Error, Mesh, Plane, Positions};
 use chains::Chains;
 use net::Net;
 use splitter::Splitter;
@@ -198,6 +198,10 @@ pub(crate) fn split_in(
         }
     }
     let Splitter { net, chains, crossings, .. } = splitter;
+    if net.has_doubled() {
+        let message = "they need an edge that the mesh has elsewhere: it overlaps itself there".to_owned();
+        return Err(Error::Option { option: "constraints", message });
+    }
     let paths = constraints.iter().enumerate().map(|(line, [from, _])| {
         let mut path = chains.path(line, |v| net.original(v));
         if path.first() != Some(from) {
@@ -208,7 +212,6 @@ pub(crate) fn split_in(
     let chains: Vec<Vec<u32>> = paths.collect();
     let (positions, triangles) = net.into_parts();
     let split = Mesh::new(Dimension::Two, positions, triangles)?;
-    check_overlaps(mesh, &split)?;
     let crossings = placed(mesh, &split, constraints, &chains, crossings);
     let deviation = deviation(&split, constraints, &chains);
     Ok(SplitCrossings { mesh: split, chains, crossings, deviation, left_out })
@@ -234,16 +237,6 @@ fn reason(net: &Net, index: usize, [u, v]: [u32; 2], obstacle: Obstacle) -> Stri
     };
     let what = obstacle.text(&|h| net.ends(h).map(|v| net.original(v)));
     format!("constraint {index} between {u} and {v} {what}")
-}
-
-/// Where the mesh overlaps itself, a flip may make an edge that it has already. Then the edge has too many triangles.
-fn check_overlaps(before: &Mesh, after: &Mesh) -> Result<(), Error> {
-    let [before, after] = [before, after].map(|mesh| Adjacency::new(mesh).non_manifold);
-    if before == after {
-        return Ok(());
-    }
-    let message = "they need an edge that the mesh has elsewhere: it overlaps itself there".to_owned();
-    Err(Error::Option { option: "constraints", message })
 }
 
 /// The new vertices, with what they are interpolated between.

@@ -2,7 +2,9 @@
 //! edges. Every vertex has one fan: the other fans of a vertex of the mesh are copies of it.
 
 use crate::mesh::adjacency::Adjacency;
+use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{LOCKED, lock, next, prev, unflagged};
+use crate::mesh::named_edges::ordered;
 use crate::mesh::star::Star;
 use crate::predicates::area_sign;
 use crate::prepare::constraints::flips::Flips;
@@ -20,12 +22,16 @@ pub(super) struct Net {
     twins: Vec<u32>,
     /// A half-edge that starts at each vertex, if it has triangles.
     corners: Vec<u32>,
+    /// The stars of the mesh that were embedded, and still are.
+    embedded: Embedded,
     /// The vertex of the mesh that each copy stands for, in ascending order.
     copies: Vec<u32>,
     /// The number of vertices of the mesh.
     pub(super) given: u32,
     /// The sign of the triangles that the present line crosses: what counts as positive.
     pub(super) sign: Ordering,
+    /// What [`Net::count_doubled`] was in the beginning.
+    doubled: usize,
 }
 
 impl Net {
@@ -34,28 +40,31 @@ impl Net {
     pub(super) fn new(mesh: &Mesh, positions: Positions, locked: &[u32]) -> Self {
         let (vertices, triangles) = (mesh.vertex_count(), mesh.triangles().to_vec());
         let mut twins = Adjacency::of_triangles(vertices, &triangles, &Threads::one()).twins;
+        let (_, embedded) = Embedded::with_winding(mesh, &twins, None, &mut None, &Threads::one());
         lock(&mut twins, locked);
         let points = Mesh::of_checked(Dimension::Two, positions, Vec::new());
         let corners = vec![NONE; vertices];
         let (copies, given, sign) = (Vec::new(), vertices as u32, Ordering::Greater);
-        let mut net = Self { points, triangles, twins, corners, copies, given, sign };
+        let mut net = Self { points, triangles, twins, corners, embedded, copies, given, sign, doubled: 0 };
+        net.doubled = net.count_doubled();
         net.separate_fans();
         net
     }
 
-    /// Gives each fan but the first of a vertex a copy of the vertex.
+    /// Gives each fan but the first of a vertex a copy of the vertex. A vertex whose star is embedded has one fan.
     fn separate_fans(&mut self) {
         let mut is_seen = vec![false; self.triangles.len()];
         let mut further = Vec::new();
         for h in 0..self.triangles.len() as u32 {
-            if is_seen[h as usize] {
-                continue;
-            }
-            Star::of_fan(&self.twins, h).for_each(|corner| is_seen[corner as usize] = true);
             let v = self.vertex(h);
-            match self.corners[v as usize] {
-                NONE => self.corners[v as usize] = h,
-                _ => further.push((v, h)),
+            if self.embedded.at(v) {
+                self.corners[v as usize] = h;
+            } else if !is_seen[h as usize] {
+                Star::of_fan(&self.twins, h).for_each(|corner| is_seen[corner as usize] = true);
+                match self.corners[v as usize] {
+                    NONE => self.corners[v as usize] = h,
+                    _ => further.push((v, h)),
+                }
             }
         }
         further.sort_unstable();
@@ -67,6 +76,30 @@ impl Net {
             self.corners.push(h);
             self.copies.push(v);
         }
+    }
+
+    /// Whether flips have made an edge that the mesh has elsewhere, where it overlaps itself.
+    pub(super) fn has_doubled(&self) -> bool {
+        self.count_doubled() > self.doubled
+    }
+
+    /// Whether the triangles at a vertex are known to have one sign and not to overlap.
+    pub(super) fn is_embedded(&self, v: u32) -> bool {
+        v >= self.given + self.copies.len() as u32 || self.embedded.at(v)
+    }
+
+    /// The number of half-edges beyond two at an edge. A flip makes such an edge only between two vertices whose stars are
+    /// not embedded.
+    fn count_doubled(&self) -> usize {
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        for h in 0..self.triangles.len() as u32 {
+            let [u, v] = self.ends(h);
+            if !self.is_embedded(u) && !self.is_embedded(v) {
+                pairs.push(ordered([u, v].map(|v| self.original(v))));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.chunk_by(|one, other| one == other).map(|pairs| pairs.len().saturating_sub(2)).sum()
     }
 
     /// Makes sure that there is memory for a new vertex.
@@ -128,13 +161,17 @@ impl Net {
         self.points.point2(v)
     }
 
+    pub(super) fn points<const N: usize>(&self, vertices: [u32; N]) -> [DVec2; N] {
+        self.points.positions().points2(vertices)
+    }
+
     pub(super) fn vertex(&self, h: u32) -> u32 {
         self.triangles[h as usize]
     }
 
     /// Both ends of a half-edge.
     pub(super) fn ends(&self, h: u32) -> [u32; 2] {
-        [h, next(h)].map(|x| self.vertex(x))
+        [self.vertex(h), self.vertex(next(h))]
     }
 
     /// The third corner of the triangle of a half-edge.

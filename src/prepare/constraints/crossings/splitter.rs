@@ -200,8 +200,8 @@ impl Splitter {
         }
         let [from, to] = [at, vertex].map(|v| self.net.point(v));
         let is_seen = |&gate: &u32| {
-            let [right, left] = self.net.ends(gate).map(|v| self.net.turn(from, to, self.net.point(v)));
-            right.is_lt() && left.is_gt()
+            let [right, left] = self.net.points(self.net.ends(gate));
+            self.net.turn(from, to, right).is_lt() && self.net.turn(from, to, left).is_gt()
         };
         if gates.iter().all(is_seen) {
             let side = self.net.bring_in([at, vertex], gates).ok_or_else(overlaps)?;

@@ -70,11 +70,12 @@ impl Net {
                 }
                 half_edges.push(h);
                 let far = self.apex(g);
-                let [x, y] = self.ends(g).map(|v| self.point(v));
-                if area_sign(x, y, self.point(far)) != sign {
+                let [x, y] = self.ends(g);
+                let [p, q, r, from, end] = self.points([x, y, far, at, to]);
+                if !self.is_embedded(far) && area_sign(p, q, r) != sign {
                     return stopped(Obstacle::Folded(g / 3));
                 }
-                let side = area_sign(self.point(at), self.point(to), self.point(far));
+                let side = area_sign(from, end, r);
                 if self.is_passed(far, side, [at, to])? {
                     break far;
                 }
@@ -96,13 +97,17 @@ impl Net {
         if let Some(unused) = [at, to].into_iter().find(|&v| !self.is_used(v)) {
             return Err(Obstacle::Unused(unused));
         }
-        let [from, end] = [at, to].map(|v| self.point(v));
+        let [from, end] = self.points([at, to]);
         let mut obstacle = Obstacle::Leaves(at);
+        // Two triangles have each vertex around this one.
+        let mut known = (NONE, Ordering::Equal);
         for copy in self.all(self.original(at)) {
             for corner in self.star(copy) {
-                let [x, y] = [next(corner), prev(corner)].map(|h| self.vertex(h));
-                let [p, q] = [x, y].map(|v| self.point(v));
-                let sides = [p, q].map(|point| area_sign(from, end, point));
+                let [x, y] = [self.vertex(next(corner)), self.vertex(prev(corner))];
+                let [p, q] = self.points([x, y]);
+                let first = if x == known.0 { known.1 } else { area_sign(from, end, p) };
+                let sides = [first, area_sign(from, end, q)];
+                known = (y, sides[1]);
                 for (v, side, h) in [(x, sides[0], corner), (y, sides[1], prev(corner))] {
                     match self.is_passed(v, side, [at, to]) {
                         Ok(true) => return Ok(Start::Edge(h, [copy, v])),
