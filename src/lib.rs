@@ -57,6 +57,7 @@ pub use points::session::PointSession;
 pub use points::triangulation::{Triangulation, triangulate, triangulate_with};
 pub use points::voronoi::Voronoi;
 pub use predicates::cos_degrees;
+pub use prepare::constraints::crossings::{Crossing, SplitCrossings, split_crossings};
 pub use prepare::constraints::{Constrained, constrained};
 pub use prepare::regions::{Regions, regions};
 pub use prepare::reorient::reoriented;

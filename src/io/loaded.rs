@@ -70,6 +70,12 @@ impl Loaded {
         Ok(triangulation)
     }
 
+    /// The same with a mesh of other vertices: a file is then written as one of another format is.
+    #[must_use]
+    pub fn with_mesh(&self, mesh: Mesh) -> Self {
+        Self { mesh, document: None, original: None, ..self.clone() }
+    }
+
     /// What a file of that format loses of [`Loaded::dropped`].
     pub fn dropped_in(&self, format: Format) -> &[String] {
         if self.keeps(format) { &[] } else { &self.dropped }

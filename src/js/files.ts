@@ -13,9 +13,10 @@
  */
 
 import * as wasm from './wasm/edgeflip_files.js';
+import { checkWidths, type SplitCrossings, type SplitOptions, splitOf } from './crossings.js';
 import { EdgeflipError, fromModule } from './error.js';
 import type { FileMesh, ReadOptions, WriteOptions } from './file-mesh.js';
-import { copyOf, read, shown, viewOf, wordsOf } from './given.js';
+import { copyOf, read, shown, wordsOf } from './given.js';
 import { areFilesLoaded, loadFiles } from './load-files.js';
 import { checkDimension, inSpace, type Mesh32, moduleMesh } from './mesh.js';
 import { initOf } from './module.js';
@@ -32,13 +33,16 @@ import {
   textOf,
 } from './settings.js';
 import type { Attributes, Bytes, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
+import { type Welded, welded } from './welded.js';
 
+export type { SplitCrossings, SplitOptions } from './crossings.js';
 export { EdgeflipError, type ErrorCode } from './error.js';
 export type { FileMesh, ReadOptions, WriteOptions } from './file-mesh.js';
 export type { IndexedMesh, Mesh32 } from './mesh.js';
 export type { ModuleSource, Sources } from './module.js';
 export type { FindFile } from './settings.js';
 export type { Attributes, Bytes, Files, IndexArray, LeftOut, Mesh, Original, VertexArray } from './types.js';
+export type { Welded } from './welded.js';
 
 /**
  * The extensions of the formats that are read and written, in upper or lower case. If `.gz` follows, as in
@@ -108,33 +112,6 @@ export interface Regions {
   isClosed: boolean;
 }
 
-/** The result of {@link weld}: a mesh whose vertices at the same position are joined. */
-export interface Welded {
-  /** Vertex indices, 3 per triangle: the first vertex at each position. */
-  indices: Uint32Array;
-  /** The seams, two vertices per edge, for the option `lockedEdges`. */
-  lockedEdges: Uint32Array;
-  /** Triangles whose corners the seams do not protect, for the option `lockedTriangles`. */
-  lockedTriangles: Uint32Array;
-  /** For each vertex, the first vertex at its position. */
-  places: Uint32Array;
-  /** How many vertices are joined to an earlier one. */
-  joined: number;
-  /** The number of reversed triangles. */
-  turned: number;
-  /**
-   * Splits the vertices again. `indices` is the result of a run that started with {@link Welded.indices} and locked the
-   * edges and triangles above. Each corner gets a vertex at its position with its attributes. A corner that did not
-   * move keeps its vertex.
-   *
-   * @throws {@link EdgeflipError} `triangle-count`, `index-out-of-range`; `invalid-option` for indices that are not
-   * such a result, if that is noticed; `freed`.
-   */
-  split(indices: Uint32Array): Uint32Array;
-  /** Frees the memory at once; the garbage collection frees it later. */
-  free(): void;
-}
-
 /** Measures of a mesh. */
 export interface Measures {
   /** Smallest angle in degrees; 60 without triangles. */
@@ -182,6 +159,13 @@ const READ_OPTIONS = namesOf<ReadOptions>({
   ignoreAttributes: true,
 });
 const LOCKS = namesOf<Locks>({ lockedEdges: true, lockedTriangles: true, groups: true });
+const SPLIT_OPTIONS = namesOf<SplitOptions>({
+  lockedEdges: true,
+  lockedTriangles: true,
+  groups: true,
+  skipConstraints: true,
+  attributes: true,
+});
 const NONE = new Uint32Array();
 const WRITE_OPTIONS = namesOf<WriteOptions>({ original: true });
 
@@ -299,15 +283,8 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
   const given = attributesOf(attributes, held);
   if (!isList(given)) return call(() => welded(wasm.Weld.ofFile(given, indices, dimension, Boolean(turns))));
   const vertices = positions.length / dimension;
-  const arrays = given.map((array, i) => {
-    if (array.length % vertices === 0 || array.length === vertices) {
-      return new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
-    }
-    throw new EdgeflipError(
-      'invalid-input',
-      `attribute ${i} has ${array.length} numbers, not a multiple of ${vertices}`,
-    );
-  });
+  checkWidths(given, vertices);
+  const arrays = given.map((array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
   return call(() => welded(wasm.Weld.of(positions, indices, dimension, arrays, Boolean(turns))));
 }
 
@@ -327,20 +304,62 @@ export async function constrain(
   locks: Locks = {},
   skips = false,
 ): Promise<Constrained> {
-  if (typeof skips !== 'boolean') {
-    throw new EdgeflipError('invalid-input', `skips: ${shown(skips)} is not true or false`);
-  }
+  flagOf(skips, 'skips');
   const { positions, indices, dimension } = moduleMesh(mesh, held);
-  const list = (given: IndexArray, what: string) => held(wordsOf(given, what), what);
-  const pairs = list(constraints, 'constraints');
-  const given = read('the locks', () => {
-    const names = Object.entries(optionsOf(locks, LOCKS, 'locks') as Locks).map(([name, value]) => [
-      name,
-      list(value ?? [], name),
-    ]);
-    return { lockedEdges: NONE, lockedTriangles: NONE, groups: NONE, ...Object.fromEntries(names) };
-  });
+  const pairs = held(wordsOf(constraints, 'constraints'), 'constraints');
+  const given = read('the locks', () => locksOf(optionsOf(locks, LOCKS, 'locks') as Locks));
   return call(() => wasm.constrain(positions, indices, dimension, pairs, given, skips));
+}
+
+/**
+ * Brings edges that may cross each other into a mesh in the plane: as {@link constrain}, but with a new vertex where two
+ * of them cross. It is at the exact crossing, rounded to the floats of the positions, and both lines go on through it.
+ * Where rounding would put another vertex on the wrong side of a line, the line goes through that vertex. It is the one
+ * call that adds vertices to a mesh. The result depends on the order of the constraints.
+ *
+ * ```ts
+ * const { positions, indices, dimension, constraintEdges } = await splitCrossings(mesh, [0, 2, 1, 3]);
+ * const result = await makeDelaunay({ positions, indices, dimension }, { lockedEdges: constraintEdges });
+ * ```
+ *
+ * @param constraints - Pairs of vertices, as the option `constraints`.
+ * @throws {@link EdgeflipError} about the mesh; `invalid-option` for a mesh in space, for a constraint that cannot be
+ * brought in, and for locks that the mesh does not have; `invalid-input`; `too-large`.
+ */
+export async function splitCrossings(
+  mesh: Mesh,
+  constraints: IndexArray,
+  options: SplitOptions = {},
+): Promise<SplitCrossings> {
+  const given = moduleMesh(mesh, held);
+  const { plane } = mesh;
+  const pairs = held(wordsOf(constraints, 'constraints'), 'constraints');
+  const { skips, locks, arrays } = read('the options', () => {
+    const { skipConstraints = false, attributes = [], ...locks } = optionsOf(options, SPLIT_OPTIONS) as SplitOptions;
+    flagOf(skipConstraints, 'skipConstraints');
+    const arrays = attributesOf(attributes, held);
+    if (!isList(arrays)) throw new EdgeflipError('invalid-input', 'attributes: it is not a list of typed arrays');
+    return { skips: skipConstraints, locks: locksOf(locks), arrays };
+  });
+  const { positions, indices, dimension, space } = given;
+  if (dimension === 2) checkWidths(arrays, positions.length / 2);
+  const isDouble = (space ?? positions) instanceof Float64Array;
+  return call(() => {
+    const split = wasm.splitCrossings(positions, indices, dimension, isDouble, pairs, locks, skips);
+    return splitOf(given, plane, arrays, split);
+  });
+}
+
+/** All locks, as the module takes them. */
+function locksOf(locks: Locks): Required<Locks> {
+  const names = Object.entries(locks).map(([name, value]) => [name, held(wordsOf(value ?? [], name), name)]);
+  return { lockedEdges: NONE, lockedTriangles: NONE, groups: NONE, ...Object.fromEntries(names) };
+}
+
+/** @throws {@link EdgeflipError} `invalid-input`. */
+function flagOf(value: unknown, what: string): void {
+  if (typeof value === 'boolean') return;
+  throw new EdgeflipError('invalid-input', `${what}: ${shown(value)} is not true or false`);
 }
 
 /**
@@ -387,31 +406,6 @@ export async function change(mesh: Mesh, after: IndexArray): Promise<Change> {
 /** `Array.isArray` does not narrow the type of a readonly array. */
 function isList(attributes: readonly VertexArray[] | Required<Original>): attributes is readonly VertexArray[] {
   return Array.isArray(attributes);
-}
-
-function welded(made: wasm.Weld): Welded {
-  const { indices, lockedEdges, lockedTriangles, places, joined, turned } = made;
-  let isFreed = false;
-  const split = (given: Uint32Array) => {
-    if (isFreed) throw new EdgeflipError('freed', 'the welded mesh has been freed');
-    const indices = viewOf(given, ['Uint32Array'], 'indices');
-    if (!indices) throw new EdgeflipError('invalid-input', `indices: ${shown(given)} is not a Uint32Array`);
-    try {
-      return made.split(indices);
-    } catch (thrown) {
-      throw fromModule(thrown);
-    }
-  };
-  const free = () => {
-    if (isFreed) return;
-    isFreed = true;
-    try {
-      made.free();
-    } catch {
-      // After a crash, the object is still borrowed by the call, and cannot be freed.
-    }
-  };
-  return { indices, lockedEdges, lockedTriangles, places, joined, turned, split, free };
 }
 
 /** Calls the module. If it is loaded, the call runs at once, before the caller can change the arrays. */

@@ -154,6 +154,14 @@ impl Mesh {
         self
     }
 
+    /// Adds a vertex to a 2D mesh. The mesh stores 32-bit floats only if the point has such coordinates.
+    pub(crate) fn push_vertex(&mut self, point: DVec2) {
+        match &mut self.positions {
+            Positions::F32(numbers) => numbers.extend(point.to_array().map(|x| x as f32)),
+            Positions::F64(numbers) => numbers.extend(point.to_array()),
+        }
+    }
+
     /// The bytes of its arrays.
     pub(crate) fn bytes(&self) -> u64 {
         4 * self.triangles.len() as u64 + self.positions.bytes()

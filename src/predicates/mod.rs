@@ -7,6 +7,7 @@
 
 mod bisectors;
 mod cosine;
+mod crossings;
 mod exact;
 mod plane;
 mod rounded;
@@ -16,6 +17,7 @@ pub(crate) use bisectors::{Line, circumcentre, compare_circumcentre, crossing, n
 pub use cosine::cos_degrees;
 #[cfg(feature = "gpu")]
 pub(crate) use cosine::cosine_fraction;
+pub(crate) use crossings::{Segment, distance_from_segment, line_crossing};
 pub(crate) use plane::{area_sign, in_circle_filter, in_circle_sign, total_area_sign};
 pub(crate) use space::{Quad, has_area, obtuse};
 

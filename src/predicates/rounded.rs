@@ -109,7 +109,7 @@ impl Mul for Double {
 
 /// Numbers in a unit that brings the largest of them near 1, and that unit. `None` near the ends of the range.
 #[inline(always)]
-pub(super) fn in_unit(numbers: [Double; 4]) -> Option<([Double; 4], f64)> {
+pub(super) fn in_unit<const N: usize>(numbers: [Double; N]) -> Option<([Double; N], f64)> {
     let largest = numbers.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let power_of_two = f64::from_bits(largest.to_bits() >> 52 << 52);
     let is_usual = (1e-290..1e290).contains(&power_of_two);

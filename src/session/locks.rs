@@ -6,7 +6,7 @@ use crate::mesh::buckets::for_each_edge;
 use crate::mesh::half_edge::next;
 use crate::session::memory_bounds;
 use crate::system::memory;
-use crate::{Error, LeftOut, Options, Welded, constrained};
+use crate::{Error, LeftOut, Options, SplitCrossings, Welded, constrained, split_crossings};
 use std::mem;
 use std::sync::Arc;
 
@@ -83,6 +83,23 @@ pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Br
         crossed_edges: made.crossed_edges,
         left_out: made.left_out,
     })
+}
+
+impl Options {
+    /// Brings the constraints in, with a vertex where two of them cross, for a run of [`SplitCrossings::mesh`]: then the
+    /// locked edges of these options are all their locks and the edges of the chains.
+    ///
+    /// # Errors
+    /// Those of [`split_crossings`]; [`Error::Option`] for locks that the mesh does not have. Then nothing has changed.
+    pub fn split_crossings(&mut self, mesh: &Mesh) -> Result<SplitCrossings, Error> {
+        let mut locked_edges = edges(mesh, self)?;
+        let split = split_crossings(mesh, &self.constraints, &locked_edges, self.skips_constraints)?;
+        locked_edges.extend(split.constraint_edges());
+        (self.locked_edges, self.constraints) = (locked_edges, Vec::new());
+        // Triangles have changed, and their locks are edges by now.
+        (self.locked_triangles, self.groups) = (Vec::new(), Vec::new());
+        Ok(split)
+    }
 }
 
 impl Welded {

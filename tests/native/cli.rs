@@ -18,7 +18,7 @@ use std::fs;
 use std::time::Instant;
 
 /// The keys of the object that `--json` prints, in their order.
-const KEYS: [&str; 38] = [
+const KEYS: [&str; 40] = [
     "input",
     "vertices",
     "triangles",
@@ -38,6 +38,8 @@ const KEYS: [&str; 38] = [
     "iterations",
     "flips",
     "crossed_edges",
+    "new_vertices",
+    "deviation",
     "left_out",
     "lost_edges",
     "flips_per_iteration",

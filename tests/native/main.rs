@@ -29,6 +29,7 @@ mod cli_quiet;
 mod cli_signals;
 mod constraint_paths;
 mod constraints;
+mod crossings;
 mod delaunator;
 mod digests;
 mod dirty;

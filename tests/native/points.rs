@@ -5,7 +5,7 @@ mod constraints;
 mod large;
 mod long;
 mod motions;
-mod oracle;
+pub mod oracle;
 mod session;
 mod threads;
 mod voronoi;

@@ -161,7 +161,7 @@ pub struct Args {
     ///
     /// Only in the plane, or with --plane. The edges that they cross make way for others; then they are locked. A
     /// vertex on such an edge splits it. Vertices count as for --lock-edges. An edge that crosses another one of the
-    /// list, a locked edge or the boundary is an error.
+    /// list, a locked edge or the boundary is an error; see --split-crossings.
     #[arg(long, value_name = "FILE")]
     pub constraints: Option<PathBuf>,
 
@@ -170,6 +170,14 @@ pub struct Args {
     /// The summary counts them, and --json lists them.
     #[arg(long, requires = "constraints")]
     pub skip_constraints: bool,
+
+    /// Add a vertex where edges of --constraints cross each other
+    ///
+    /// It is at the crossing, rounded to the floats of the coordinates; with --plane, its height is between those of the
+    /// vertices before and after it on the first edge of the list that passes it. The new vertices follow those of IN. OUT
+    /// is written as with --drop-attributes. A glTF file is refused: its parts have no place for new vertices.
+    #[arg(long, requires = "constraints", conflicts_with = "weld")]
+    pub split_crossings: bool,
 
     /// Make triangles that are turned over or flat positive first, in the plane
     ///
@@ -230,7 +238,8 @@ pub struct Args {
     /// crossing_polygons (the numbers of faces, see the notes), points (null for a mesh: heights, whether they have a
     /// third coordinate; hull, the points on it, counter-clockwise; duplicates, each point that equals an earlier one,
     /// and that one), backend, adapter, fallback, status (done or stopped), iterations, flips, crossed_edges (that made
-    /// way for constraints), left_out (for each constraint left out, its index in the list and the reason), lost_edges
+    /// way for constraints), new_vertices and deviation (of --split-crossings: their number, and how far an edge of the
+    /// list is at most from its way through the result), left_out (for each constraint left out, its index in the list and the reason), lost_edges
     /// (the two vertices of each locked edge that --untangle could not keep), flips_per_iteration, dispatches,
     /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
     /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg,
@@ -293,7 +302,7 @@ impl Args {
             coordinates,
             max_bytes: self.max_bytes,
             external_files: self.external_files,
-            keep: is_same && !self.drop_attributes && !self.weld,
+            keep: is_same && !self.drop_attributes && !self.weld && !self.split_crossings,
             ignore_attributes: self.ignore_attribute.clone(),
         }
     }

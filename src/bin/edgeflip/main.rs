@@ -9,11 +9,12 @@ mod report;
 #[cfg(unix)]
 mod signals;
 mod threads;
+mod times;
 mod words;
 
 use args::{Args, DimensionArg};
 use clap::Parser;
-use edgeflip::io::{self, Output, Staged};
+use edgeflip::io::{self, Format, Output, Staged};
 use edgeflip::{
     Backend, EarlyGpu, EngineKind, Error, Mesh, Options, Order, Outcome, Plane, Welded, close_gpu,
     make_delaunay, quality, reoriented,
@@ -21,12 +22,13 @@ use edgeflip::{
 use failure::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use points::Points;
-use report::{Changes, Check, Milliseconds, Report};
+use report::{Changes, Check, Report};
 use std::io::{IsTerminal, Write};
 use std::mem;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use times::Milliseconds;
 
 fn main() {
     let clock = Clock::new();
@@ -91,6 +93,13 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     let mut ms = Milliseconds { start: clock.lap(), ..Milliseconds::default() };
     let mut loaded = io::load(&args.input, &args.read_options(output.format())).map_err(refused)?;
     ms.load = clock.lap();
+    if args.split_crossings && loaded.keeps(Format::Glb) {
+        let line = format!(
+            "{}: option --split-crossings: the parts of a glTF file have no place for new vertices; convert it to PLY first",
+            args.input.display()
+        );
+        return Err(Failure { status: 1, line });
+    }
     let leaves = loaded.keeps(output.format()) && !output.is_beside(&args.input);
     let left_behind = if leaves { loaded.leave_folder() } else { Vec::new() };
     let has_points = loaded.has_points_only();
@@ -117,6 +126,13 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
         welded.constrain(&mut options);
     }
     let attribute_edges = loaded.constrain(&mut options).map_err(refused)?;
+    let split = args.split_crossings.then(|| options.split_crossings(mesh)).transpose().map_err(refused)?;
+    let lifted = split.as_ref().map(|split| split.lifted(surface, plane.unwrap_or(Plane::Xy)));
+    let lifted = lifted.transpose().map_err(refused)?;
+    let (mesh, surface) = match (&split, &lifted) {
+        (Some(split), Some(lifted)) => (&split.mesh, lifted),
+        _ => (mesh, surface),
+    };
     ms.prepare = clock.lap();
     // While the GPU is being opened.
     let before = args.is_reported().then(|| quality::measures(mesh));
@@ -147,7 +163,10 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
         bar.set_message(format!("writing {}", args.output.display()));
         let split = welded.as_ref().map(|welded| welded.split(&outcome.triangles));
         let triangles = split.unwrap_or_else(|| Ok(mem::take(&mut outcome.triangles)));
-        let written = triangles.and_then(|triangles| output.stage(&loaded, triangles));
+        let written = triangles.and_then(|triangles| match &lifted {
+            Some(lifted) => output.stage(&loaded.with_mesh(lifted.clone()), triangles),
+            None => output.stage(&loaded, triangles),
+        });
         staged = Some(written.map_err(|e| Failure::of(&args.output, &e))?);
         ms.save = Some(clock.lap());
     }
@@ -157,6 +176,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
         Report::new(args, mesh, outcome, changes, turned, check, ms)
             .with_plane(plane, surface)
             .with_points(points)
+            .with_split(split.as_ref())
             .with_joined(welded.as_ref())
             .with_attributes(&loaded, output.format(), attribute_edges)
             .with_left_behind(&left_behind)

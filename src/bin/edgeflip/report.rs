@@ -3,17 +3,17 @@
 use crate::args::Args;
 use crate::failure::Failure;
 use crate::points::Points;
+use crate::times::Milliseconds;
 use crate::words::{FLAT, INVERTED, change, first, first_edges, kept, reasons, short};
 use edgeflip::io::{AttributeEdges, Format, Loaded};
 use edgeflip::quality::{self, Measures};
 use edgeflip::{
-    Dimension, Error, LeftOut, Mesh, Outcome, Plane, Positions, Reasons, Status, Timings, Welded,
+    Dimension, Error, LeftOut, Mesh, Outcome, Plane, Positions, Reasons, SplitCrossings, Status, Welded,
 };
 use indicatif::{HumanBytes, HumanCount};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::mem;
 use std::path::Path;
 
 /// The keys of `--json`, in their order. Skipped fields are for the summary.
@@ -38,6 +38,8 @@ pub struct Report {
     iterations: u32,
     flips: u64,
     crossed_edges: u64,
+    new_vertices: usize,
+    deviation: f64,
     left_out: Vec<LeftOut>,
     lost_edges: Vec<[u32; 2]>,
     flips_per_iteration: Vec<u32>,
@@ -134,54 +136,6 @@ impl Changes {
     }
 }
 
-/// Wall times in milliseconds. All parts add up to the total. `null` for a part that was skipped.
-#[derive(Default, Serialize)]
-pub struct Milliseconds {
-    pub start: f64,
-    pub load: f64,
-    pub prepare: f64,
-    pub device: f64,
-    pub constraints: f64,
-    pub upload: f64,
-    pub adjacency: f64,
-    pub flip: f64,
-    pub count: f64,
-    pub measure: Option<f64>,
-    pub verify: Option<f64>,
-    pub save: Option<f64>,
-    pub total: f64,
-}
-
-impl Milliseconds {
-    /// Adds the times of the library, rounded to microseconds.
-    pub fn of_run(&mut self, &Timings { constraints, upload, adjacency, flip, total }: &Timings) {
-        let count = total - constraints - upload - adjacency - flip;
-        let [constraints, upload, adjacency, flip, count] =
-            [constraints, upload, adjacency, flip, count].map(|ms| (ms * 1e3).round() / 1e3);
-        *self = Self { constraints, upload, adjacency, flip, count, ..mem::take(self) };
-    }
-
-    /// The parts that were done, with their names.
-    fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let &Self { start, load, prepare, device, constraints, upload, adjacency, flip, count, .. } = self;
-        let all = [
-            ("start", Some(start)),
-            ("load", Some(load)),
-            ("prepare", Some(prepare)),
-            ("device", Some(device)),
-            ("constraints", Some(constraints)),
-            ("upload", Some(upload)),
-            ("adjacency", Some(adjacency)),
-            ("flips", Some(flip)),
-            ("count", Some(count)),
-            ("measure", self.measure),
-            ("verify", self.verify),
-            ("save", self.save),
-        ];
-        all.into_iter().filter_map(|(name, ms)| Some((name, ms?)))
-    }
-}
-
 impl Report {
     /// `turned`: the number of triangles that were reversed first.
     pub fn new(
@@ -216,6 +170,8 @@ impl Report {
             iterations: outcome.iterations,
             flips: outcome.flips,
             crossed_edges: outcome.crossed_edges,
+            new_vertices: 0,
+            deviation: 0.0,
             left_out: outcome.left_out,
             lost_edges: outcome.lost_edges,
             flips_per_iteration: outcome.flips_per_iteration,
@@ -259,6 +215,16 @@ impl Report {
     pub fn with_points(mut self, points: Option<Points>) -> Self {
         self.notes.extend(points.as_ref().and_then(Points::note));
         self.points = points;
+        self
+    }
+
+    /// Adds what became of constraints that cross.
+    pub fn with_split(mut self, split: Option<&SplitCrossings>) -> Self {
+        if let Some(SplitCrossings { crossings, deviation, left_out, .. }) = split {
+            self.new_vertices = crossings.len();
+            self.deviation = *deviation;
+            self.left_out.clone_from(left_out);
+        }
         self
     }
 
@@ -327,10 +293,11 @@ impl Report {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{name:<10} {value}");
         };
-        let [vertices, triangles] = [self.vertices, self.triangles].map(|n| HumanCount(n as u64));
+        let read = [self.vertices - self.new_vertices, self.triangles - 2 * self.new_vertices];
+        let [vertices, triangles] = read.map(|n| HumanCount(n as u64));
         let bits = if self.coordinates == 64 { ", 64-bit coordinates" } else { "" };
         let found = match &self.points {
-            Some(points) => points.found(self.vertices),
+            Some(points) => points.found(read[0]),
             None => {
                 let plane =
                     self.plane.map(|plane| format!(" with heights, plane {plane}")).unwrap_or_default();
@@ -369,6 +336,10 @@ impl Report {
         if self.crossed_edges > 0 {
             let edges = HumanCount(self.crossed_edges);
             line("inserted", format!("constraints, which crossed {edges} edges"));
+        }
+        if self.new_vertices > 0 {
+            let count = HumanCount(self.new_vertices as u64);
+            line("split", format!("{count} crossings; an edge moved by up to {}", short(self.deviation)));
         }
         if let Some(LeftOut { reason, .. }) = self.left_out.first() {
             line("left out", format!("constraints: {}; {reason}", HumanCount(self.left_out.len() as u64)));

@@ -1,6 +1,7 @@
 //! Brings edges into a mesh in the plane. The triangles that they cross make way for others, by exact tests. No vertex
 //! moves, and none is added.
 
+pub(crate) mod crossings;
 mod insert;
 mod rounds;
 mod state;
@@ -59,18 +60,7 @@ pub fn constrained(
     skips: bool,
     threads: Option<NonZeroUsize>,
 ) -> Result<Constrained, Error> {
-    let refuse = |message| Err(Error::Option { option: "constraints", message });
-    if mesh.dimension() == Dimension::Three {
-        return refuse(
-            "constraints need a mesh of dimension 2; edges of a surface can only be locked; a terrain needs plane".to_owned(),
-        );
-    }
-    let vertices = mesh.vertex_count();
-    if let Some(index) = constraints.iter().position(|ends| ends.iter().any(|&v| v as usize >= vertices)) {
-        let [u, v] = constraints[index];
-        let message = format!("constraint {index} joins {u} and {v}; the mesh has {vertices} vertices");
-        return refuse(message);
-    }
+    check_constraints(mesh, constraints)?;
     let threads = Threads::new(threads, mesh.triangle_count())?;
     let locked = half_edges(mesh, locked_edges)?;
     let run = || {
@@ -89,13 +79,34 @@ pub fn constrained(
     let (triangles, mut edges, mut left_out, crossed_edges) = threads.enter(run);
     left_out.sort_by_key(|left| left.index);
     if let Some(LeftOut { reason, .. }) = left_out.first().filter(|_| !skips) {
-        return refuse(reason.clone());
+        return Err(refused(reason.clone()));
     }
     edges.sort_by_key(|&(index, _)| index);
     let edges = edges.into_iter().map(|(_, ends)| ends);
     let locks = locked_edges.len();
     let locked_edges = locked_edges.iter().copied().chain(edges).collect();
     Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, crossed_edges, left_out })
+}
+
+/// # Errors
+/// [`Error::Option`] for a mesh in space, and for a vertex that does not exist.
+fn check_constraints(mesh: &Mesh, constraints: &[[u32; 2]]) -> Result<(), Error> {
+    if mesh.dimension() == Dimension::Three {
+        return Err(refused(
+            "constraints need a mesh of dimension 2; edges of a surface can only be locked; a terrain needs plane".to_owned(),
+        ));
+    }
+    let vertices = mesh.vertex_count();
+    if let Some(index) = constraints.iter().position(|ends| ends.iter().any(|&v| v as usize >= vertices)) {
+        let [u, v] = constraints[index];
+        let message = format!("constraint {index} joins {u} and {v}; the mesh has {vertices} vertices");
+        return Err(refused(message));
+    }
+    Ok(())
+}
+
+fn refused(message: String) -> Error {
+    Error::Option { option: "constraints", message }
 }
 
 /// Each constraint from the end where fewer triangles and constraints meet: a walk begins with a search among the
@@ -159,39 +170,12 @@ impl Work<'_> {
 
     /// What keeps a constraint out.
     fn what(&self, obstacle: Obstacle) -> String {
-        match obstacle {
-            Obstacle::Unused(vertex) => {
-                format!("ends at vertex {vertex}, which no triangle has; weld it if another vertex is there")
-            }
-            Obstacle::SameVertex => "joins a vertex to itself; remove it from the list".to_owned(),
-            Obstacle::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
-            Obstacle::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
-            Obstacle::Folded(triangle) => {
-                format!("crosses triangle {triangle}, which is flat or turned over")
-            }
-            Obstacle::Covered(vertex) => {
-                format!(
-                    "reaches the point of vertex {vertex} in triangles without it; triangles overlap there, or \
-                     another vertex has that point"
-                )
-            }
-            Obstacle::Doubled([a, b]) => {
-                format!("needs an edge between {a} and {b}, which the mesh has elsewhere: it overlaps there")
-            }
-            Obstacle::Border(h) => {
-                let [a, b] = self.state.ends(h);
-                format!("crosses the edge between {a} and {b}, which does not have two triangles")
-            }
-            Obstacle::Locked(h) => {
-                let [a, b] = self.state.ends(h);
-                match self.origins.get(&ordered([a, b])) {
-                    Some(&other) => {
-                        let [c, d] = self.constraints[other];
-                        format!("crosses constraint {other} between {c} and {d}")
-                    }
-                    None => format!("crosses the locked edge between {a} and {b}"),
-                }
-            }
+        if let Obstacle::Locked(h) = obstacle
+            && let Some(&other) = self.origins.get(&ordered(self.state.ends(h)))
+        {
+            let [c, d] = self.constraints[other];
+            return format!("crosses constraint {other} between {c} and {d}");
         }
+        obstacle.text(&|h| self.state.ends(h))
     }
 }

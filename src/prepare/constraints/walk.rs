@@ -71,6 +71,38 @@ pub(super) enum Obstacle {
     Doubled([u32; 2]),
 }
 
+impl Obstacle {
+    /// What it keeps a constraint from, as the end of a sentence. `ends` has the vertices of a half-edge.
+    pub(super) fn text(self, ends: &dyn Fn(u32) -> [u32; 2]) -> String {
+        match self {
+            Self::Unused(vertex) => {
+                format!("ends at vertex {vertex}, which no triangle has; weld it if another vertex is there")
+            }
+            Self::SameVertex => "joins a vertex to itself; remove it from the list".to_owned(),
+            Self::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
+            Self::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
+            Self::Folded(triangle) => format!("crosses triangle {triangle}, which is flat or turned over"),
+            Self::Covered(vertex) => {
+                format!(
+                    "reaches the point of vertex {vertex} in triangles without it; triangles overlap there, or \
+                     another vertex has that point"
+                )
+            }
+            Self::Doubled([a, b]) => {
+                format!("needs an edge between {a} and {b}, which the mesh has elsewhere: it overlaps there")
+            }
+            Self::Border(h) => {
+                let [a, b] = ends(h);
+                format!("crosses the edge between {a} and {b}, which does not have two triangles")
+            }
+            Self::Locked(h) => {
+                let [a, b] = ends(h);
+                format!("crosses the locked edge between {a} and {b}")
+            }
+        }
+    }
+}
+
 impl Walk {
     fn check(&self, most: usize) -> Result<(), Option<Obstacle>> {
         if self.crossed.len() + self.around.len() > most { Err(None) } else { Ok(()) }

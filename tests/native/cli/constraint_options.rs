@@ -22,7 +22,11 @@ fn constraints_are_brought_in() {
         (&found["left_out"], &found["audit"], &found["remaining"]),
         (&json!([]), &json!([]), &json!({}))
     );
-    assert!(fs::read_to_string(&output).unwrap().contains("\n3 3 1 2\n"));
+    let written = fs::read_to_string(&output).unwrap();
+    assert!(
+        ["1 2 3", "2 3 1", "3 1 2"].iter().any(|face| written.contains(&format!("\n3 {face}\n"))),
+        "{written}"
+    );
     assert!(text(&with(&[]).stderr).contains("\ninserted   constraints, which crossed 1 edges\n"));
 
     fs::remove_file(&output).unwrap();
@@ -48,4 +52,61 @@ fn a_constraint_beside_a_dead_end_passes_the_audit() {
     let ran = run(&input, &output, &["--constraints", list.to_str().unwrap(), "--verify", "--quiet"]);
     assert_eq!((ran.status.code(), text(&ran.stderr)), (Some(0), ""));
     assert!(output.exists());
+}
+
+/// Both diagonals of a square with a colour at its first vertex, which only a file of the same vertices keeps.
+#[test]
+fn edges_that_cross_get_a_vertex() {
+    let folder = Folder::new();
+    let square = "COFF\n4 2 0\n0 0 0 255 0 0 255\n4 0 0\n4 2 0\n0 2 0\n3 0 1 2\n3 0 2 3\n";
+    let input = folder.file(
+        "in.off",
+        square
+            .replace("4 0 0\n", "4 0 0 0 0 0 255\n")
+            .replace("4 2 0\n0 2 0\n", "4 2 0 0 0 0 255\n0 2 0 0 0 0 255\n"),
+    );
+    let output = folder.path("out.off");
+    let list = folder.file("list.txt", "0 2\n1 3\n");
+    let arguments = ["--constraints", list.to_str().unwrap(), "--split-crossings", "--verify"];
+    let ran = run(&input, &output, &[&arguments[..], &["--json"]].concat());
+    assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
+    let said: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!(
+        [&said["new_vertices"], &said["vertices"], &said["triangles"], &said["left_out"], &said["clean"]],
+        [&json!(1), &json!(5), &json!(4), &json!([]), &json!(true)]
+    );
+    assert_eq!(said["deviation"], json!(0.0));
+    let written = fs::read_to_string(&output).unwrap();
+    assert!(written.starts_with("OFF\n5 4 0\n0 0 0\n4 0 0\n4 2 0\n0 2 0\n2 1 0\n"), "{written}");
+    let summary = run(&input, &output, &arguments);
+    let summary = text(&summary.stderr);
+    for line in [
+        ": 4 vertices, 2 triangles, 2D\n",
+        "\nsplit      1 crossings; an edge moved by up to 0.0000\n",
+        "note       not kept: ",
+    ] {
+        assert!(summary.contains(line), "{summary}");
+    }
+
+    let list = ["--constraints", list.to_str().unwrap(), "--split-crossings"];
+    let refused = run(&input, &output, &[&list[..], &["--weld"]].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    let part = folder.path("part.glb");
+    assert_eq!(run(&input, &part, &["--quiet"]).status.code(), Some(0));
+    let line = format!(
+        "{}: option --split-crossings: the parts of a glTF file have no place for new vertices; convert it to PLY first",
+        part.display()
+    );
+    failed(&run(&part, &output, &[&list[..], &["--plane", "xy"]].concat()), 1, &line);
+}
+
+#[test]
+fn breaklines_that_cross_have_a_height() {
+    let folder = Folder::new();
+    let input = folder.file("in.obj", "v 0 0 5\nv 10 0 6\nv 10 10 7\nv 0 10 5.5\nf 1 2 4\nf 2 3 4\n");
+    let (list, output) = (folder.file("list.txt", "0 2\n3 1\n"), folder.path("out.obj"));
+    let list = ["--constraints", list.to_str().unwrap(), "--split-crossings", "--plane", "xy", "--verify"];
+    let ran = run(&input, &output, &list);
+    assert_eq!(ran.status.code(), Some(0), "{}", text(&ran.stderr));
+    assert!(fs::read_to_string(&output).unwrap().contains("v 0 10 5.5\nv 5 5 6\nf "));
 }
