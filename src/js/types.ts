@@ -47,7 +47,7 @@ export interface Options {
   /**
    * Edges to bring in before the run, as pairs of vertices, one pair after the other, for a mesh in the plane. The edges
    * that they cross make way for others; then they are locked. A vertex on such an edge splits it. An edge that crosses
-   * another one, a locked edge or the boundary is an error that names both. A terrain needs a {@link Mesh.plane}. Loads
+   * another one, a locked edge or the boundary is an error that names both. A terrain needs a `plane`. Loads
    * the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
