@@ -42,8 +42,6 @@ mod reach;
 mod splitter;
 mod straight;
 mod taut;
-#[cfg(test)]
-mod tests;
 
 use super::walk::Obstacle;
 use crate::mesh::named_edges::{LeftOut, half_edges, ordered};
