@@ -277,7 +277,9 @@ test('the terrain of the report gets its breakline in JavaScript, three.js and g
       .setIndices(accessor('SCALAR', Uint16Array.from(mesh.indices)));
     if (uv) primitive.setAttribute('TEXCOORD_0', accessor('VEC2', Float32Array.of(0, 0, 1, 0, 1, 1, 0, 1)));
     document.createMesh().addPrimitive(primitive);
-    await document.transform(delaunay({ plane: 'xz', constraints }));
+    const flat = refused('invalid-option', /only a mesh of dimension 2 can be untangled$/);
+    await assert.rejects(document.transform(delaunay({ untangle: true })), flat);
+    await document.transform(delaunay({ plane: 'xz', untangle: true, constraints }));
     hasBreakline(primitive.getIndices().getArray());
     const bytes = await new WebIO().writeBinary(document);
     const read = await readMesh(bytes, 'a.glb', { plane: 'xz' });

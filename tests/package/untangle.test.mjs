@@ -6,7 +6,6 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import Delaunator from 'delaunator';
 import * as here from 'edgeflip';
-import { delaunay } from 'edgeflip/gltf-transform';
 import * as inline from 'edgeflip/inline';
 import { delaunayGeometry } from 'edgeflip/three';
 import * as away from 'edgeflip/worker';
@@ -245,7 +244,6 @@ test('what cannot be untangled is refused, in words', async () => {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(space.positions, 3));
   await assert.rejects(delaunayGeometry(geometry, { ...onCpu, untangle: true }), refused);
-  assert.throws(() => delaunay({ untangle: true }), { message: /^untangle is not an option; / });
   await here.init();
   assert.throws(() => here.makeDelaunaySync(square(1, 3), { untangle: true }), {
     message: /^untangle is not an option; /,
