@@ -8,7 +8,7 @@ import { type AllPlaces, spaceOf } from './mesh.js';
 import type { Floats } from './plane.js';
 import { namesOf, optionsOf } from './names.js';
 import { type Hold, MOST_ITERATIONS } from './settings.js';
-import type { ModuleSession } from './threads.js';
+import type { SessionBuffers } from './session-buffers.js';
 import type { UpdateOptions } from './types.js';
 
 /** The options of an update without a buffer: in a worker, which none can enter, all. */
@@ -72,7 +72,7 @@ export function updateOf(
  * @throws {@link EdgeflipError} `invalid-option`.
  */
 export function takeOnDevice(
-  { gpu, backend }: Pick<ModuleSession, 'gpu' | 'backend'>,
+  { gpu, backend }: { readonly gpu?: SessionBuffers | undefined; readonly backend: string },
   buffer: Source | undefined,
   { dimension, vertices }: AllPlaces,
   heights: Heights | undefined,

@@ -1,6 +1,5 @@
 /** Vertices that are joined for a run, and split again afterwards. */
 
-import type * as wasm from './wasm/edgeflip_files.js';
 import { EdgeflipError, fromModule } from './error.js';
 import { shown, viewOf } from './given.js';
 
@@ -32,7 +31,7 @@ export interface Welded {
 }
 
 /** The result for what the module has made. */
-export function welded(made: wasm.Weld): Welded {
+export function welded(made: Welded): Welded {
   const { indices, lockedEdges, lockedTriangles, places, joined, turned } = made;
   let isFreed = false;
   const split = (given: Uint32Array) => {
