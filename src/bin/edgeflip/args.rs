@@ -173,9 +173,9 @@ pub struct Args {
 
     /// Add a vertex where edges of --constraints cross each other
     ///
-    /// It is at the crossing, rounded to the floats of the coordinates; with --plane, its height is between those of the
-    /// vertices before and after it on the first edge of the list that passes it. The new vertices follow those of IN. OUT
-    /// is written as with --drop-attributes. A glTF file is refused: its parts have no place for new vertices.
+    /// It is at the crossing, rounded to the floats of the coordinates; with --plane, its height is between those of
+    /// the vertices before and after it on the first edge of the list that passes it. The new vertices follow those of
+    /// IN. OUT is written as with --drop-attributes. A glTF file is refused: its parts have no place for new vertices.
     #[arg(long, requires = "constraints", conflicts_with = "weld")]
     pub split_crossings: bool,
 
@@ -239,16 +239,17 @@ pub struct Args {
     /// third coordinate; hull, the points on it, counter-clockwise; duplicates, each point that equals an earlier one,
     /// and that one), backend, adapter, fallback, status (done or stopped), iterations, flips, crossed_edges (that made
     /// way for constraints), new_vertices and deviation (of --split-crossings: their number, and how far an edge of the
-    /// list is at most from its way through the result), left_out (for each constraint left out, its index in the list and the reason), lost_edges
-    /// (the two vertices of each locked edge that --untangle could not keep), flips_per_iteration, dispatches,
-    /// device_bytes, remaining (by reason), inverted (triangles that are turned over, in the plane: they have not the
-    /// orientation of the total area of their component), flat (triangles of no area), min_angle_before_deg,
-    /// min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area,
-    /// volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles, attribute_edges (locked
-    /// to keep attributes), attribute_edges_by_name (how many each attribute locks; several may lock the same edge), ms
-    /// (wall times in milliseconds, see below), and with --verify audit (the violations), clean (no violation, and no
-    /// inverted triangle), remaining_edges (by reason, the two vertices of each edge left, counted from 0),
-    /// inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces before and after).
+    /// list is at most from its way through the result), left_out (for each constraint left out, its index in the list
+    /// and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
+    /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
+    /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),
+    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
+    /// flat_triangles, area, volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles,
+    /// attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute locks; several may
+    /// lock the same edge), ms (wall times in milliseconds, see below), and with --verify audit (the violations), clean
+    /// (no violation, and no inverted triangle), remaining_edges (by reason, the two vertices of each edge left,
+    /// counted from 0), inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces
+    /// before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
     /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); constraints

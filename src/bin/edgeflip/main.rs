@@ -279,8 +279,8 @@ fn turn(
     })
 }
 
-/// Runs the independent check. `surface` is the mesh with its heights. A different count of the edges left, or of the triangles that are turned over or flat, is
-/// also a violation.
+/// Runs the independent check. `surface` is the mesh with its heights. A different count of the edges left, or of the
+/// triangles that are turned over or flat, is also a violation.
 fn check(options: &Options, mesh: &Mesh, surface: &Mesh, outcome: &Outcome) -> Check {
     let audit = quality::audit_outcome(mesh, outcome, options);
     let mut violations: Vec<String> = audit.violations.iter().map(ToString::to_string).collect();

@@ -4,6 +4,7 @@ use super::state::State;
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev};
 use crate::mesh::named_edges::ordered;
+use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
@@ -31,6 +32,33 @@ pub(super) struct Region {
     pub(super) second: usize,
     /// The sign of all its triangles, and of a triangle of the part and a vertex on its left.
     pub(super) sign: Ordering,
+}
+
+impl Region {
+    /// The triangles of a part that crosses the edges of these half-edges, at least one. They are in the order from its
+    /// first end to its second, and each belongs to the triangle that the part leaves.
+    pub(super) fn across(half_edges: &[u32], twin: impl Fn(u32) -> u32, sign: Ordering) -> Self {
+        let (mut triangles, mut right, mut left) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(&h) = half_edges.first() {
+            triangles.push(h / 3);
+            right.push(prev(h));
+            left.push(next(h));
+        }
+        for (i, &h) in (1..).zip(half_edges) {
+            let g = twin(h);
+            triangles.push(g / 3);
+            let after = half_edges.get(i);
+            if after != Some(&next(g)) {
+                right.push(next(g));
+            }
+            if after != Some(&prev(g)) {
+                left.push(prev(g));
+            }
+        }
+        let second = right.len();
+        let sides = right.into_iter().chain(left.into_iter().rev()).collect();
+        Self { triangles, sides, second, sign }
+    }
 }
 
 /// A constraint in the present mesh.
@@ -195,8 +223,7 @@ impl State<'_> {
             return Err(Some(obstacle));
         }
         let (mut h, sign) = start.ok_or(Some(Obstacle::Leaves(at)))?;
-        let (mut right, mut left) = (vec![prev(h)], vec![next(h)]);
-        let first = walk.crossed.len();
+        let mut half_edges = Vec::new();
         walk.crossed.push(h / 3);
         self.ends(h).into_iter().for_each(|v| self.suspect(walk, v));
         loop {
@@ -212,6 +239,7 @@ impl State<'_> {
             if self.is_locked(h) {
                 return stopped(Obstacle::Locked(h));
             }
+            half_edges.push(h);
             let g = self.twin(h);
             walk.crossed.push(g / 3);
             walk.check(most)?;
@@ -221,21 +249,11 @@ impl State<'_> {
                 return stopped(Obstacle::Folded(g / 3));
             }
             let side = side(far);
-            let is_end = self.is_passed(far, side, [at, to])?;
-            let is_left = side == sign;
-            if is_end || !is_left {
-                right.push(next(g));
-            }
-            if is_end || is_left {
-                left.push(prev(g));
-            }
-            if is_end {
-                let (triangles, second) = (walk.crossed[first..].to_vec(), right.len());
-                let sides = right.into_iter().chain(left.into_iter().rev()).collect();
-                let region = Region { triangles, sides, second, sign };
+            if self.is_passed(far, side, [at, to])? {
+                let region = Region::across(&half_edges, |h| self.twin(h), sign);
                 return Ok(Part { ends: [at, far], way: Way::Across(region) });
             }
-            h = if is_left { next(g) } else { prev(g) };
+            h = if side == sign { next(g) } else { prev(g) };
         }
     }
 
@@ -250,19 +268,25 @@ impl State<'_> {
         if v == to {
             return Ok(true);
         }
-        if side.is_ne() {
-            return Ok(false);
-        }
-        let [from, end, point] = [at, to, v].map(|v| self.mesh.point2(v).to_array());
-        // On one line, one coordinate that differs decides.
-        let axis = usize::from(from[0] == end[0]);
-        let order = |x: f64, y: f64| x.partial_cmp(&y).unwrap_or(Ordering::Equal);
-        let ahead = order(end[axis], from[axis]);
-        if order(point[axis], from[axis]) != ahead {
-            return Ok(false);
-        }
-        if order(end[axis], point[axis]) == ahead { Ok(true) } else { Err(Obstacle::Covered(to)) }
+        is_between([at, to, v].map(|v| self.mesh.point2(v)), side).ok_or(Obstacle::Covered(to))
     }
+}
+
+/// Whether a point, which lies on this side of the line from one point to another, is between them. `None` if it is at or
+/// beyond the second.
+pub(super) fn is_between([from, end, point]: [DVec2; 3], side: Ordering) -> Option<bool> {
+    if side.is_ne() {
+        return Some(false);
+    }
+    let [from, end, point] = [from, end, point].map(|point| point.to_array());
+    // On one line, one coordinate that differs decides.
+    let axis = usize::from(from[0] == end[0]);
+    let order = |x: f64, y: f64| x.partial_cmp(&y).unwrap_or(Ordering::Equal);
+    let ahead = order(end[axis], from[axis]);
+    if order(point[axis], from[axis]) != ahead {
+        return Some(false);
+    }
+    (order(end[axis], point[axis]) == ahead).then_some(true)
 }
 
 /// Keeps the candidate with the lower half-edge.

@@ -226,7 +226,7 @@ impl Net {
     /// Makes two vertices an edge, whose line crosses the edges of these half-edges and no vertex. Each half-edge belongs
     /// to the triangle that the line leaves. None of them is locked. Returns a half-edge of the new edge.
     pub(super) fn bring_in(&mut self, half_edges: &[u32]) -> Option<u32> {
-        let region = self.region(half_edges)?;
+        let region = Region::across(half_edges, |h| self.twin(h), self.sign);
         let links = Links {
             mesh: &self.points,
             triangles: shared(&mut self.triangles),
@@ -237,26 +237,6 @@ impl Net {
         let h = links.fill(&region, &ears);
         self.set_corners(&region.triangles);
         Some(h)
-    }
-
-    /// The triangles that a line crosses with the edges of these half-edges.
-    fn region(&self, half_edges: &[u32]) -> Option<Region> {
-        let first = *half_edges.first()?;
-        let (mut triangles, mut right, mut left) = (vec![first / 3], vec![prev(first)], vec![next(first)]);
-        for (i, &h) in (1..).zip(half_edges) {
-            let g = self.twin(h);
-            triangles.push(g / 3);
-            let after = half_edges.get(i);
-            if after != Some(&next(g)) {
-                right.push(next(g));
-            }
-            if after != Some(&prev(g)) {
-                left.push(prev(g));
-            }
-        }
-        let second = right.len();
-        let sides = right.into_iter().chain(left.into_iter().rev()).collect();
-        Some(Region { triangles, sides, second, sign: self.sign })
     }
 
     fn set_corners(&mut self, triangles: &[u32]) {

@@ -4,7 +4,7 @@ use super::net::Net;
 use crate::NONE;
 use crate::mesh::half_edge::{next, prev};
 use crate::predicates::area_sign;
-use crate::prepare::constraints::walk::Obstacle;
+use crate::prepare::constraints::walk::{Obstacle, is_between};
 use std::cmp::Ordering;
 
 /// A part of a line between two vertices on it, without a vertex between them.
@@ -132,17 +132,6 @@ impl Net {
         if self.is_same(v, to) {
             return Ok(true);
         }
-        if side.is_ne() {
-            return Ok(false);
-        }
-        let [from, end, point] = [at, to, v].map(|v| self.point(v).to_array());
-        // On one line, one coordinate that differs decides.
-        let axis = usize::from(from[0] == end[0]);
-        let order = |x: f64, y: f64| x.partial_cmp(&y).unwrap_or(Ordering::Equal);
-        let ahead = order(end[axis], from[axis]);
-        if order(point[axis], from[axis]) != ahead {
-            return Ok(false);
-        }
-        if order(end[axis], point[axis]) == ahead { Ok(true) } else { Err(Obstacle::Covered(to)) }
+        is_between(self.points([at, to, v]), side).ok_or(Obstacle::Covered(to))
     }
 }
