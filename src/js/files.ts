@@ -289,8 +289,8 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
 }
 
 /**
- * Brings edges into a mesh in the plane: the edges that they cross make way for others, by exact tests. No vertex moves, and none
- * is added. The option `constraints` does so before a run.
+ * Brings edges into a mesh in the plane: the edges that they cross make way for others, by exact tests. No vertex moves,
+ * and none is added. The option `constraints` does so before a run.
  *
  * @param constraints - Pairs of vertices, as the option `constraints`.
  * @param locks - Edges that must not flip.

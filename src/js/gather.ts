@@ -61,23 +61,23 @@ export function sourceOf(options: UpdateOptions, places: AllPlaces): Source {
 }
 
 /**
- * Submits the copy of these numbers of each vertex, or of so many. Errors are those of the device: a buffer of another
- * device, or without the usage.
+ * Submits the copy of these numbers of each vertex. Errors are those of the device: a buffer of another device, or
+ * without the usage.
  */
 export function copyTo(
   device: GpuDevice,
   { buffer, offset, stride }: Source,
   positions: GpuBuffer,
-  numbersOfVertex: readonly number[] | 2 | 3,
+  axes: readonly number[],
   vertices: number,
 ): void {
-  const axes = typeof numbersOfVertex === 'number' ? [0, 1, 2].slice(0, numbersOfVertex) : numbersOfVertex;
   const width = axes.length;
   const numbers = vertices * width;
   if (numbers === 0) return;
   const { queue } = device;
   const encoder = device.createCommandEncoder();
-  if (stride === width && axes.every((axis, i) => axis === i)) {
+  // A plane leaves a number out of three, so its stride is larger.
+  if (stride === width) {
     encoder.copyBufferToBuffer(buffer, 4 * offset, positions, 0, 4 * numbers);
     queue.submit([encoder.finish()]);
     return;

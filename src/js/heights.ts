@@ -22,9 +22,8 @@ export class Heights {
   constructor(plane: Plane, positions: Floats, indices: Uint32Array) {
     this.#plane = plane;
     this.#positions = positions;
-    const planes = [plane, ...(Object.keys(AXES) as Plane[])];
-    const right = planes.find((plane) => isTerrain(plane, positions, indices));
-    this.rightPlane = right === plane ? undefined : right;
+    const isRight = (plane: Plane) => isTerrain(plane, positions, indices);
+    this.rightPlane = isRight(plane) ? undefined : (Object.keys(AXES) as Plane[]).find(isRight);
   }
 
   /** The buffers of the session, with all coordinates as its positions. */
@@ -55,7 +54,7 @@ export class Heights {
     const vertices = this.#positions.length / 3;
     const own = this.#device === gpu.device ? this.#buffer : undefined;
     const source = given ?? (own && { buffer: own, offset: 0, stride: 3 });
-    if (given && own) copyTo(gpu.device, given, own, 3, vertices);
+    if (given && own) copyTo(gpu.device, given, own, [0, 1, 2], vertices);
     if (source) copyTo(gpu.device, source, gpu.positions, AXES[this.#plane], vertices);
   }
 

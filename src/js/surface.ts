@@ -30,8 +30,8 @@ export interface Surface {
 }
 
 /**
- * The mesh and the options for `makeDelaunay`. `plane` is that of a terrain. `weld` compares all attributes by default, and `maxDeviation` is in the
- * units that normalized positions stand for.
+ * The mesh and the options for `makeDelaunay`. `plane` is that of a terrain. `weld` compares all attributes by default,
+ * and `maxDeviation` is in the units that normalized positions stand for.
  */
 export function meshOf(
   surface: Surface,

@@ -77,11 +77,11 @@ export function takeOnDevice(
   { dimension, vertices }: AllPlaces,
   heights: Heights | undefined,
 ): void {
-  if (buffer && !gpu) {
+  if (!gpu) {
+    if (!buffer) return;
     const message = `option buffer: the session is on ${backend}, not on a device that has buffers`;
     throw new EdgeflipError('invalid-option', message);
   }
-  if (!gpu) return;
   if (heights) heights.moveOn(gpu, buffer);
-  else if (buffer) copyTo(gpu.device, buffer, gpu.positions, dimension, vertices);
+  else if (buffer) copyTo(gpu.device, buffer, gpu.positions, [0, 1, 2].slice(0, dimension), vertices);
 }
