@@ -148,8 +148,7 @@ fn run(args: &Args, mut clock: Clock) -> Result<Done, Failure> {
     .map_err(refused)?;
     close_gpu();
     outcome.fallback = fallback.or(outcome.fallback);
-    ms.of_run(&outcome.timings);
-    clock.lap();
+    ms.of_run(&outcome.timings, clock.lap());
 
     let changes = before.map(|before| Changes::new(mesh, before, &outcome)).transpose().map_err(refused)?;
     ms.measure = ms.measure.map(|before| before + clock.lap());

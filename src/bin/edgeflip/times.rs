@@ -23,9 +23,9 @@ pub struct Milliseconds {
 }
 
 impl Milliseconds {
-    /// Adds the times of the library, rounded to microseconds.
-    pub fn of_run(&mut self, &Timings { constraints, upload, adjacency, flip, total }: &Timings) {
-        let count = total - constraints - upload - adjacency - flip;
+    /// Adds the times of the library, rounded to microseconds. What is left of `lap` counts as `count`.
+    pub fn of_run(&mut self, &Timings { constraints, upload, adjacency, flip, .. }: &Timings, lap: f64) {
+        let count = lap - constraints - upload - adjacency - flip;
         let [constraints, upload, adjacency, flip, count] =
             [constraints, upload, adjacency, flip, count].map(|ms| (ms * 1e3).round() / 1e3);
         *self = Self { constraints, upload, adjacency, flip, count, ..mem::take(self) };
