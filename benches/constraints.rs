@@ -64,7 +64,7 @@ fn contenders<'a>(mesh: &'a Arc<Mesh>, edges: &'a [[u32; 2]]) -> Vec<Contender<'
     let one = NonZeroUsize::new(1);
     let step = |threads| {
         Box::new(move || {
-            black_box(constrained(mesh, edges, &[], false, threads)?);
+            black_box(constrained(mesh, edges, &[], false, 0.0, threads)?);
             Ok(())
         })
     };

@@ -96,6 +96,8 @@ export interface Constrained {
   constraintEdges: Uint32Array;
   /** How many edges they crossed: each made way for another one. */
   crossedEdges: number;
+  /** The largest distance of a vertex from the constraint that goes through it; 0 without a tolerance. */
+  deviation: number;
   /** The constraints that were left out. */
   leftOut: LeftOut[];
 }
@@ -295,6 +297,7 @@ export async function weld(mesh: Mesh, attributes: Attributes = [], turns = fals
  * @param constraints - Pairs of vertices, as the option `constraints`.
  * @param locks - Edges that must not flip.
  * @param skips - Whether constraints that cannot be brought in are left out. Otherwise they are errors.
+ * @param tolerance - As the option `constraintTolerance`.
  * @throws {@link EdgeflipError} about the mesh; `invalid-option` for a mesh in space, for a constraint that cannot be
  * brought in, and for locks that the mesh does not have; `invalid-input`.
  */
@@ -303,12 +306,15 @@ export async function constrain(
   constraints: IndexArray,
   locks: Locks = {},
   skips = false,
+  tolerance = 0,
 ): Promise<Constrained> {
   flagOf(skips, 'skips');
+  if (typeof tolerance !== 'number')
+    throw new EdgeflipError('invalid-input', `tolerance: ${shown(tolerance)} is not a number`);
   const { positions, indices, dimension } = moduleMesh(mesh, held);
   const pairs = held(wordsOf(constraints, 'constraints'), 'constraints');
   const given = read('the locks', () => locksOf(optionsOf(locks, LOCKS, 'locks') as Locks));
-  return call(() => wasm.constrain(positions, indices, dimension, pairs, given, skips));
+  return call(() => wasm.constrain(positions, indices, dimension, pairs, given, skips, tolerance));
 }
 
 /**

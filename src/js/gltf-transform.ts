@@ -68,6 +68,7 @@ const OPTIONS = namesOf<DelaunayOptions>({
   maxAttributeShift: true,
   plane: true,
   constraints: true,
+  constraintTolerance: true,
   skipConstraints: true,
   untangle: true,
 });

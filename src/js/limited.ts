@@ -24,10 +24,12 @@ export interface ShiftOptions {
 }
 
 /** The options of a terrain, besides those of a surface. */
-export interface TerrainOptions extends Pick<MakeDelaunayOptions, 'constraints' | 'skipConstraints' | 'untangle'> {
+export interface TerrainOptions
+  extends Pick<MakeDelaunayOptions, 'constraints' | 'constraintTolerance' | 'skipConstraints' | 'untangle'> {
   /**
    * The plane of a terrain: these two coordinates decide, and the third, the height, counts for nothing. In three.js and
-   * glTF y is up: `'xz'`. The options `constraints`, `skipConstraints` and `untangle` need it.
+   * glTF y is up: `'xz'`. The options `constraints`, `constraintTolerance`, `skipConstraints` and `untangle`
+   * need it.
    */
   plane?: Plane | undefined;
 }

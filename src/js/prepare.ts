@@ -13,7 +13,7 @@ export interface Preparation {
   /** What `weld` joined. */
   welded?: Welded;
   /** What `constraints` brought in. */
-  constrained?: Pick<Constrained, 'crossedEdges' | 'leftOut'> & {
+  constrained?: Pick<Constrained, 'crossedEdges' | 'deviation' | 'leftOut'> & {
     ms: number;
     /** The edges of the constraints by the vertices of a result. `joined` are its triangles before the split. */
     edgesIn: (indices: Uint32Array, joined: Uint32Array) => Uint32Array;
@@ -28,6 +28,8 @@ export interface Before {
   lockedEdges: Uint32Array;
   constraints: Uint32Array;
   constraintEdges: Uint32Array;
+  /** The option `constraintTolerance`. */
+  tolerance: number;
   /** The indices of the constraints that were left out. */
   leftOut: Uint32Array;
 }
@@ -43,7 +45,7 @@ export interface Prepared extends Preparation {
  */
 export async function prepare(
   mesh: ReadMesh,
-  { weld: attributes, reorient: turns, constraints, skipConstraints, ...settings }: Settings,
+  { weld: attributes, reorient: turns, constraints, constraintTolerance, skipConstraints, ...settings }: Settings,
 ): Promise<Prepared> {
   const prepared = await untangled(mesh, await joined(mesh, settings, attributes, turns));
   if (!constraints) return prepared;
@@ -52,17 +54,19 @@ export async function prepare(
   const ends = welded ? placed(constraints, welded) : constraints;
   const locks = { lockedEdges, lockedTriangles, groups };
   const start = performance.now();
-  const { constraintEdges, crossedEdges, leftOut, ...made } = await constrain(
+  const { constraintEdges, crossedEdges, deviation, leftOut, ...made } = await constrain(
     { positions: mesh.positions, indices, dimension: mesh.dimension },
     ends,
     locks,
     skipConstraints,
+    constraintTolerance,
   );
   const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
     constrained: {
       crossedEdges,
+      deviation,
       leftOut,
       ms: performance.now() - start,
       edgesIn: (indices, joined) => edgesIn(constraintEdges, indices, joined),
@@ -73,6 +77,7 @@ export async function prepare(
       lockedEdges: made.lockedEdges.slice(0, ofLocks),
       constraints: ends,
       constraintEdges,
+      tolerance: constraintTolerance ?? 0,
       leftOut: Uint32Array.from(leftOut, ({ index }) => index),
     },
     indices: made.indices,

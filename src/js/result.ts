@@ -43,6 +43,7 @@ export function resultOf<I extends IndexArray>(
     seamEdges,
     crossedEdges: constrained?.crossedEdges ?? 0,
     constraintEdges: constrained?.edgesIn(indices, outcome.indices) ?? new Uint32Array(),
+    constraintDeviation: constrained?.deviation ?? 0,
     leftOut: constrained?.leftOut ?? [],
     timings: { ...timings, constraints, total: constraints + timings.total },
   });

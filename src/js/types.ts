@@ -51,6 +51,12 @@ export interface Options {
    * the module of `edgeflip/files`.
    */
   constraints?: IndexArray | undefined;
+  /**
+   * The largest distance of a vertex from a constraint that counts as on it, in the units of the positions: the
+   * constraint then goes through the vertex, so that lines meet which miss their common vertex by rounding. The result
+   * has the largest of these distances as `constraintDeviation`. Default: 0.
+   */
+  constraintTolerance?: number | undefined;
   /** Leaves out the constraints that cannot be brought in, and lists them as `leftOut`. Default: they are errors. */
   skipConstraints?: boolean | undefined;
   /**
@@ -128,6 +134,7 @@ export const OPTION_KINDS = {
   lockedTriangles: 'list',
   groups: 'list',
   constraints: 'list',
+  constraintTolerance: 'number',
   skipConstraints: 'flag',
   untangle: 'flag',
   reorient: 'flag',
@@ -230,6 +237,7 @@ export type SyncOptions = Omit<
   | 'weld'
   | 'reorient'
   | 'constraints'
+  | 'constraintTolerance'
   | 'skipConstraints'
   | 'untangle'
 >;
@@ -330,6 +338,8 @@ export interface Result<I extends IndexArray = Uint32Array> {
    * `edgeflip/files`. They are in the order of the constraints; a constraint through vertices is several edges.
    */
   constraintEdges: Uint32Array;
+  /** The largest distance of a vertex from the constraint that goes through it; 0 without `constraintTolerance`. */
+  constraintDeviation: number;
   /** The constraints that `skipConstraints` left out. */
   leftOut: LeftOut[];
   /**

@@ -9,6 +9,7 @@ mod bisectors;
 mod cosine;
 mod crossings;
 mod exact;
+mod near;
 mod plane;
 mod rounded;
 mod space;
@@ -18,6 +19,7 @@ pub use cosine::cos_degrees;
 #[cfg(feature = "gpu")]
 pub(crate) use cosine::cosine_fraction;
 pub(crate) use crossings::{Segment, distance_from_segment, line_crossing};
+pub(crate) use near::{compare_across, compare_along, is_near};
 pub(crate) use plane::{area_sign, in_circle_filter, in_circle_sign, total_area_sign};
 pub(crate) use space::{Quad, has_area, obtuse};
 

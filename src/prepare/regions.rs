@@ -177,7 +177,7 @@ mod tests {
 
     /// How many regions there are, and the area inside.
     fn found(mesh: &Mesh, edges: &[[u32; 2]]) -> (u32, f64) {
-        let Constrained { mesh, locked_edges, .. } = constrained(mesh, edges, &[], false, None).unwrap();
+        let Constrained { mesh, locked_edges, .. } = constrained(mesh, edges, &[], false, 0.0, None).unwrap();
         let Regions { count, of_triangles, inside, is_closed } = regions(&mesh, &locked_edges).unwrap();
         assert_eq!((of_triangles[0], is_closed), (0, edges.len() != 1));
         assert!((0..count).all(|region| of_triangles.contains(&region)));
@@ -286,7 +286,7 @@ mod tests {
             let mesh = families::by_name(&format!("random 12 seed={seed}")).unwrap();
             let ring: Vec<u32> = corners;
             let edges: Vec<[u32; 2]> = sides(&[&ring]).into_iter().filter(|[u, v]| u != v).collect();
-            let Ok(Constrained { mesh, locked_edges, .. }) = constrained(&mesh, &edges, &[], false, None) else {
+            let Ok(Constrained { mesh, locked_edges, .. }) = constrained(&mesh, &edges, &[], false, 0.0, None) else {
                 return Ok(());
             };
             let found = regions(&mesh, &locked_edges).unwrap();

@@ -3,7 +3,7 @@
 
 use super::audit_exact;
 use super::edges::{Class, Edge};
-use super::paths::{Named, Paths, take_path};
+use super::paths::{Line, Named, Paths, take_path};
 use super::surface::{Limits, RemainingEdge, Surface};
 use crate::{Dimension, Error, Mesh, Options, Outcome, Reason, Reasons, Session, cos_degrees};
 use std::cmp::Ordering;
@@ -103,7 +103,7 @@ pub enum Violation {
         /// Larger end.
         v: u32,
     },
-    /// A constraint is no path of edges along its line, or an edge of its path is missing.
+    /// A constraint is no path of edges along its line, as far as the tolerance allows, or an edge of its path is missing.
     #[error("constraint {u}-{v} is missing")]
     Constraint {
         /// Its first vertex.
@@ -293,11 +293,12 @@ fn add_constraints(
     named: Option<Named>,
 ) {
     let constraints = options.constraints.iter();
+    let line = |ends| Line { ends, tolerance: options.constraint_tolerance };
     let mut add = |path: &[[u32; 2]]| locked.extend(path.iter().map(|&[u, v]| (u.min(v), u.max(v))));
     if let Some(Named { mut edges, left_out, .. }) = named {
         let is_left_out = |i| options.skips_constraints && left_out.binary_search(&i).is_ok();
         for (_, &[u, v]) in constraints.enumerate().filter(|&(i, _)| !is_left_out(i)) {
-            let path = take_path(after, &mut edges, [u, v]).unwrap_or_default();
+            let path = take_path(after, &mut edges, line([u, v])).unwrap_or_default();
             add(path);
             if path.is_empty() || path.iter().any(|&[u, v]| !after.table.contains(u, v)) {
                 audit.report(Violation::Constraint { u, v });
@@ -306,7 +307,7 @@ fn add_constraints(
     } else if !options.constraints.is_empty() {
         let mut paths = Paths::new(after);
         for &[u, v] in constraints {
-            match paths.along([u, v]) {
+            match paths.along(line([u, v])) {
                 Some(path) => add(&path),
                 None if options.skips_constraints => {}
                 None => audit.report(Violation::Constraint { u, v }),

@@ -208,6 +208,37 @@ pub(super) fn turn(triangle: [Coord<f64>; 3]) -> Ordering {
     sign(&corner.normal[2])
 }
 
+/// For the way from `p` to `q`, the sign of its part along the line from `u` to `v`, and of the part to the left of it.
+pub(super) fn ahead([u, v]: [Coord<f64>; 2], [p, q]: [Coord<f64>; 2]) -> [Ordering; 2] {
+    let (way, line) = ([q.x - p.x, q.y - p.y], [v.x - u.x, v.y - u.y]);
+    let values = [line[0] * way[0] + line[1] * way[1], line[0] * way[1] - line[1] * way[0]];
+    let size = line[0].hypot(line[1]) * way[0].hypot(way[1]);
+    let numbers = [u.x, u.y, v.x, v.y, p.x, p.y, q.x, q.y];
+    if ordinary(&numbers) && values.iter().all(|value| value.abs() > BOUND * size) {
+        return values.map(sign_of);
+    }
+    let unit = ExactSum::unit(numbers.into_iter());
+    let [ux, uy, vx, vy, px, py, qx, qy] = numbers.map(|x| integer(x, unit));
+    let ([x, y], [a, b]) = ([vx - ux, vy - uy], [qx - px, qy - py]);
+    [&x * &a + &y * &b, &x * &b - &y * &a].map(|value| sign(&value))
+}
+
+/// Whether the distance of `p` from the line through `u` and `v` is at most `most`.
+pub(super) fn near([u, v]: [Coord<f64>; 2], p: Coord<f64>, most: f64) -> bool {
+    let (line, way) = ([v.x - u.x, v.y - u.y], [p.x - u.x, p.y - u.y]);
+    let (length, size) = (line[0].hypot(line[1]), way[0].hypot(way[1]) + most);
+    let value = (line[0] * way[1] - line[1] * way[0]).abs() - most * length;
+    let numbers = [u.x, u.y, v.x, v.y, p.x, p.y, most];
+    if ordinary(&numbers) && value.abs() > BOUND * length * size {
+        return value < 0.0;
+    }
+    let unit = ExactSum::unit(numbers.into_iter());
+    let [ux, uy, vx, vy, px, py, most] = numbers.map(|x| integer(x, unit));
+    let ([x, y], [a, b]) = ([vx - &ux, vy - &uy], [px - ux, py - uy]);
+    let area = &x * b - &y * a;
+    &area * &area <= &most * &most * (&x * &x + &y * &y)
+}
+
 /// The sign of the in-circle determinant: `Greater` if d is inside the circle of the counter-clockwise triangle a, b,
 /// c. For any orientation it is the sign of the polynomial -(cross1·dot2 + dot1·cross2) of the angles at c and d.
 pub(super) fn in_circle([a, b, c, d]: [Coord<f64>; 4]) -> Ordering {

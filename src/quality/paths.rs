@@ -1,6 +1,6 @@
 //! Paths of edges along a line: what a constraint has become.
 
-use super::audit_exact::turn;
+use super::audit_exact::{ahead, near, turn};
 use super::surface::Surface;
 
 /// What a run says of its constraints.
@@ -13,19 +13,27 @@ pub(crate) struct Named<'a> {
     pub lost_edges: &'a [[u32; 2]],
 }
 
-/// Takes the path from `u` to `v` off the start of `edges`: its vertices are on the line between them, each nearer to
-/// `v` than the one before. Its edges may be missing in the surface. `None` if `edges` does not start with such a path.
+/// The line between two vertices, and how far from it a vertex counts as on it.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    pub(super) ends: [u32; 2],
+    pub(super) tolerance: f64,
+}
+
+/// Takes the path along a line off the start of `edges`: its vertices count as on the line, each further along it than
+/// the one before. Its edges may be missing in the surface. `None` if `edges` does not start with such a path.
 pub(super) fn take_path<'e>(
     surface: &Surface,
     edges: &mut &'e [[u32; 2]],
-    [u, v]: [u32; 2],
+    line: Line,
 ) -> Option<&'e [[u32; 2]]> {
+    let [u, v] = line.ends;
     if u.max(v) as usize >= surface.mesh.vertex_count() {
         return None;
     }
     let (all, mut at) = (*edges, u);
     for (i, &[from, to]) in all.iter().enumerate() {
-        if from != at || !is_between(surface, [at, to, v]) {
+        if from != at || !line.leads(surface, [at, to]) {
             return None;
         }
         at = to;
@@ -58,19 +66,20 @@ impl<'a> Paths<'a> {
 
     /// The edges of a path as of [`take_path`]. `None` if there is no such path. A search visits each vertex at most
     /// once. It begins at the end with fewer edges, so that many constraints may end at one vertex.
-    pub fn along(&mut self, [u, v]: [u32; 2]) -> Option<Vec<[u32; 2]>> {
+    pub fn along(&mut self, Line { ends: [u, v], tolerance }: Line) -> Option<Vec<[u32; 2]>> {
         if u.max(v) as usize >= self.reached.len() {
             return None;
         }
         let degree = |v| around(&self.neighbours, v).len();
         let is_turned = degree(v) < degree(u);
         let [from, to] = if is_turned { [v, u] } else { [u, v] };
+        let line = Line { ends: [from, to], tolerance };
         self.searches += 1;
         let mut open = vec![from];
         while let Some(at) = open.pop() {
             for &(_, next) in around(&self.neighbours, at) {
                 let (search, before) = &mut self.reached[next as usize];
-                if *search != self.searches && is_between(self.surface, [at, next, to]) {
+                if *search != self.searches && line.leads(self.surface, [at, next]) {
                     (*search, *before) = (self.searches, at);
                     open.push(next);
                 }
@@ -104,12 +113,21 @@ fn around(neighbours: &[(u32, u32)], v: u32) -> &[(u32, u32)] {
     &neighbours[first..first + count]
 }
 
-/// Whether `w` is `v`, or on the open line from `u` to `v`.
-fn is_between(surface: &Surface, [u, w, v]: [u32; 3]) -> bool {
-    let lies_in = |from: f64, at: f64, to: f64| (from < at && at < to) || (from > at && at > to);
-    let is_inside = || {
-        let [p, q, r] = [u, w, v].map(|vertex| surface.coord(vertex));
-        turn([p, q, r]).is_eq() && (lies_in(p.x, q.x, r.x) || lies_in(p.y, q.y, r.y))
-    };
-    w == v || ((w as usize) < surface.mesh.vertex_count() && is_inside())
+impl Line {
+    /// Whether a path along the line may go from one of its vertices to another.
+    fn leads(self, surface: &Surface, [at, next]: [u32; 2]) -> bool {
+        let [_, v] = self.ends;
+        let lies_in = |from: f64, at: f64, to: f64| (from < at && at < to) || (from > at && at > to);
+        let is_on = || {
+            let [p, q, r] = [at, next, v].map(|vertex| surface.coord(vertex));
+            if self.tolerance == 0.0 {
+                return turn([p, q, r]).is_eq() && (lies_in(p.x, q.x, r.x) || lies_in(p.y, q.y, r.y));
+            }
+            let line = self.ends.map(|vertex| surface.coord(vertex));
+            let [along, across] = ahead(line, [p, q]);
+            let is_inside = ahead(line, [line[0], q])[0].is_gt() && ahead(line, [q, r])[0].is_gt();
+            along.then(across).is_gt() && is_inside && near(line, q, self.tolerance)
+        };
+        next == v || ((next as usize) < surface.mesh.vertex_count() && is_on())
+    }
 }

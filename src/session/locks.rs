@@ -49,6 +49,7 @@ pub(crate) struct BroughtIn {
     /// How many of the locked edges are locks; the others are edges of constraints.
     pub(crate) locks: usize,
     pub(crate) crossed_edges: u64,
+    pub(crate) deviation: f64,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
@@ -66,8 +67,9 @@ pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Br
     }
     memory::check(memory_bounds::bytes(mesh, options))?;
     let locks = edges(mesh, options)?;
-    let Options { skips_constraints, threads, .. } = *options;
-    let made = constrained(mesh, &options.constraints, &locks, skips_constraints, threads)?;
+    let Options { skips_constraints, constraint_tolerance, threads, .. } = *options;
+    let made =
+        constrained(mesh, &options.constraints, &locks, skips_constraints, constraint_tolerance, threads)?;
     let before = (mem::replace(mesh, Arc::new(made.mesh)), mem::take(options));
     // The flips have moved triangles, and their locks are edges by now.
     *options = Options {
@@ -81,6 +83,7 @@ pub(crate) fn bring_in(mesh: &mut Arc<Mesh>, options: &mut Options) -> Result<Br
         before: Some(before),
         locks: made.locks,
         crossed_edges: made.crossed_edges,
+        deviation: made.deviation,
         left_out: made.left_out,
     })
 }

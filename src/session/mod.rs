@@ -261,6 +261,7 @@ impl Session {
             iterations: self.flips_per_iteration.len() as u32,
             flips: self.flips(),
             crossed_edges: self.constraints.crossed_edges,
+            constraint_deviation: self.constraints.deviation,
             constraint_edges: self.constraint_edges().to_vec(),
             left_out: self.constraints.left_out.clone(),
             lost_edges: self.held.lost.clone(),

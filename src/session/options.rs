@@ -58,6 +58,12 @@ pub struct Options {
     /// Edges to bring in before the run, each by its two vertices (2D only). They are locked. A vertex on one
     /// splits it. See [`constrained`](crate::constrained). In the npm package, another module brings them in.
     pub constraints: Vec<[u32; 2]>,
+    /// The largest distance of a vertex from a constraint that counts as on it, in the units of the positions: the
+    /// constraint then goes through the vertex, so that lines meet which miss their common vertex by rounding.
+    /// [`Outcome::constraint_deviation`](crate::Outcome::constraint_deviation) is the largest of these distances. Each
+    /// vertex within it counts, in the order along the constraint. 0: only those exactly on it. Constraints then come in
+    /// on one thread.
+    pub constraint_tolerance: f64,
     /// Whether constraints that cannot be brought in are left out, and listed in
     /// [`Outcome::left_out`](crate::Outcome::left_out). Otherwise they are errors.
     pub skips_constraints: bool,
@@ -163,6 +169,7 @@ impl Default for Options {
             locked_triangles: Vec::new(),
             groups: Vec::new(),
             constraints: Vec::new(),
+            constraint_tolerance: 0.0,
             skips_constraints: false,
             untangle: None,
             order: Order::Reproducible,

@@ -89,6 +89,9 @@ pub struct Outcome {
     pub flips: u64,
     /// How many edges the constraints crossed: each made way for another one, without a flip.
     pub crossed_edges: u64,
+    /// The largest distance of a vertex from the constraint that goes through it; 0 without
+    /// [`Options::constraint_tolerance`](crate::Options::constraint_tolerance).
+    pub constraint_deviation: f64,
     /// The edges that the constraints have become, each by its two vertices, for [`regions`](crate::regions). The
     /// constraints are in their order; the edges of one lead from its first vertex to its second.
     pub constraint_edges: Vec<[u32; 2]>,

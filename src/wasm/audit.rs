@@ -21,6 +21,8 @@ extern "C" {
     fn constraint_edges(this: &JsBefore) -> Uint32Array;
     #[wasm_bindgen(method, getter, js_name = leftOut)]
     fn left_out(this: &JsBefore) -> Uint32Array;
+    #[wasm_bindgen(method, getter)]
+    fn tolerance(this: &JsBefore) -> f64;
 }
 
 /// As [`quality::audit_outcome`]. `locked_edges` has all edges that the options lock, 2 vertices per edge; `options` has no
@@ -46,7 +48,12 @@ pub fn audit(
         let Some(before) = before else { return Ok(quality::audit(&input, &triangles, &options)) };
         let left_out: Vec<usize> = before.left_out().to_vec().into_iter().map(|i| i as usize).collect();
         let skips_constraints = !left_out.is_empty();
-        let options = Options { constraints: pairs(&before.constraints()), skips_constraints, ..options };
+        let options = Options {
+            constraints: pairs(&before.constraints()),
+            constraint_tolerance: before.tolerance(),
+            skips_constraints,
+            ..options
+        };
         let named = Named { edges: &pairs(&before.constraint_edges()), left_out, lost_edges: &[] };
         Ok(audit_named(&input, &triangles, &options, Some(named)))
     };

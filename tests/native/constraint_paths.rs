@@ -21,21 +21,25 @@ fn edges(triangles: &[u32]) -> BTreeSet<Pair> {
     triangles.as_chunks().0.iter().flat_map(sides).collect()
 }
 
-/// The edges that are on a path from the first vertex of a constraint to its second: all vertices that are on the line, in
-/// their order, and what the edges between them reach from either end. The coordinates are small integers.
-fn oracle(points: &[[i64; 2]], edges: &BTreeSet<Pair>, [u, v]: Pair) -> BTreeSet<Pair> {
+/// The edges that are on a path from the first vertex of a constraint to its second: all vertices that count as on the
+/// line, in their order, and what the edges between them reach from either end. The coordinates are small integers, and
+/// so is twice the tolerance.
+fn oracle(points: &[[i64; 2]], edges: &BTreeSet<Pair>, [u, v]: Pair, tolerance: f64) -> BTreeSet<Pair> {
     let from_u = |w: u32| [0, 1].map(|axis| points[w as usize][axis] - points[u as usize][axis]);
     let [dx, dy] = from_u(v);
+    let square = dx * dx + dy * dy;
     let place = |w: u32| {
         let [x, y] = from_u(w);
-        (x * dy == y * dx).then_some(x * dx + y * dy)
+        let (along, across) = (x * dx + y * dy, dx * y - dy * x);
+        let reach = (2.0 * tolerance) as i64;
+        (4 * across.pow(2) <= reach.pow(2) * square).then_some((along, across))
     };
     let inside = (0..points.len() as u32).filter(|&w| w != u && w != v);
     let inside =
-        inside.filter_map(|w| Some((place(w)?, w))).filter(|&(at, _)| 0 < at && at < dx * dx + dy * dy);
+        inside.filter_map(|w| Some((place(w)?, w))).filter(|&((along, _), _)| 0 < along && along < square);
     let mut inside: Vec<_> = inside.collect();
     inside.sort_unstable();
-    let line: Vec<_> = [(0, u)].into_iter().chain(inside).chain([(dx * dx + dy * dy, v)]).collect();
+    let line: Vec<_> = [((0, 0), u)].into_iter().chain(inside).chain([((square, 0), v)]).collect();
     let steps =
         |i: usize, j: usize| line[i].0 < line[j].0 && edges.contains(&ordered([line[i].1, line[j].1]));
     let last = line.len() - 1;
@@ -222,6 +226,7 @@ fn round(seed: usize, met: &Met) {
         order: [Order::Reproducible, Order::Any][random.below(2)],
         threads: NonZeroUsize::new(1),
         constraints,
+        constraint_tolerance: [0.0, 0.0, 0.5, 1.0, 2.0][random.below(5)],
         skips_constraints: true,
         ..Options::default()
     };
@@ -235,12 +240,12 @@ fn round(seed: usize, met: &Met) {
     add(&met.flips, outcome.flips as usize);
 
     // The result is right.
-    let points = scaled(&mesh, 1.0);
+    let (points, tolerance) = (scaled(&mesh, 1.0), options.constraint_tolerance);
     let present = edges(&outcome.triangles);
     let mut named = outcome.constraint_edges.iter();
     let mut paths = Vec::new();
     for &[u, v] in &kept {
-        let (all, mut path, mut at) = (oracle(&points, &present, [u, v]), Vec::new(), u);
+        let (all, mut path, mut at) = (oracle(&points, &present, [u, v], tolerance), Vec::new(), u);
         while at != v {
             let &[from, to] = named.next().unwrap();
             assert_eq!(from, at, "seed {seed}");
@@ -275,7 +280,7 @@ fn round(seed: usize, met: &Met) {
             assert_eq!(faults(&audit_outcome(&mesh, &damaged, &options)).0, lost, "seed {seed}: {edge:?}");
         }
         let gone: Vec<Pair> =
-            kept.iter().copied().filter(|&ends| oracle(&points, &left, ends).is_empty()).collect();
+            kept.iter().copied().filter(|&ends| oracle(&points, &left, ends, tolerance).is_empty()).collect();
         if gone.len() < 60 {
             assert_eq!(faults(&audit(&mesh, &damaged.triangles, &alone)).0, gone, "seed {seed}: {edge:?}");
         }

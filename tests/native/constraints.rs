@@ -28,7 +28,7 @@ fn every_engine_goes_on_from_the_constraints() {
         };
         for _ in 0..8 {
             let constraints = random_pairs(&mesh, &mut random);
-            let inserted = constrained(&mesh, &constraints, &[], true, None).unwrap();
+            let inserted = constrained(&mesh, &constraints, &[], true, 0.0, None).unwrap();
             let locks = Options { locked_edges: inserted.locked_edges, ..options(Backend::Cpu, 10.0) };
             let want = watched(&inserted.mesh, &locks).unwrap();
             for backend in [Backend::Cpu, Backend::Gpu] {
@@ -85,7 +85,7 @@ fn locks_by_triangle_and_by_group_stay() {
 fn constraints_stay_while_the_mesh_moves() {
     let mesh = by_name("random 12").unwrap();
     let constraints = vec![[0, 143], [11, 3]];
-    let inserted = constrained(&mesh, &constraints, &[], true, None).unwrap();
+    let inserted = constrained(&mesh, &constraints, &[], true, 0.0, None).unwrap();
     let options = Options { constraints, skips_constraints: true, ..options(Backend::Cpu, 10.0) };
     let mut session = block_on(Session::new(mesh.clone(), options)).unwrap();
     for frame in 0..3 {

@@ -61,12 +61,12 @@ fn random_lines_become_chains() {
 fn lines_that_do_not_cross_come_in_as_constraints() {
     let mesh = by_name("random 12").unwrap();
     let lines = [[0, 143], [11, 3], [13, 130]];
-    let plain = constrained(&mesh, &lines, &[], true, None).unwrap();
+    let plain = constrained(&mesh, &lines, &[], true, 0.0, None).unwrap();
     let kept: Vec<[u32; 2]> = (0..lines.len())
         .filter(|&i| plain.left_out.iter().all(|left| left.index != i))
         .map(|i| lines[i])
         .collect();
-    let plain = constrained(&mesh, &kept, &[], false, None).unwrap();
+    let plain = constrained(&mesh, &kept, &[], false, 0.0, None).unwrap();
     let split = split(&mesh, &kept);
     assert_eq!((split.mesh.positions(), split.deviation), (plain.mesh.positions(), 0.0));
     let pairs: Vec<[u32; 2]> = split
@@ -110,7 +110,7 @@ fn a_crossing_is_rounded_to_the_numbers_of_the_mesh() {
 fn constraints_that_cannot_come_in_are_errors() {
     let mesh = by_name("random 12").unwrap();
     let lines = [[13, 130], [22, 120], [7, 7], [25, 100]];
-    let locked = constrained(&mesh, &[[22, 120]], &[], false, None).unwrap();
+    let locked = constrained(&mesh, &[[22, 120]], &[], false, 0.0, None).unwrap();
     let refused = split_crossings(&locked.mesh, &lines, &locked.locked_edges, false);
     let Err(Error::Option { option: "constraints", message }) = refused else { panic!("{refused:?}") };
     assert!(
@@ -185,7 +185,7 @@ fn a_report() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/native/crossings/spade116.ply");
     let mesh = io::read(file, &io::ReadOptions::default()).unwrap();
     let lines = [[0, 1], [2, 3], [4, 3], [5, 3]];
-    let message = constrained(&mesh, &lines, &[], false, None).unwrap_err().to_string();
+    let message = constrained(&mesh, &lines, &[], false, 0.0, None).unwrap_err().to_string();
     assert!(message.contains("crosses constraint"), "{message}");
     let split = split(&mesh, &lines);
     assert!(check(&mesh, &lines, &split) <= 2.0);

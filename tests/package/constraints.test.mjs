@@ -57,6 +57,26 @@ test('a long constraint becomes a path of edges, and the rest is Delaunay', asyn
   }
 });
 
+test('lines that miss their common vertex by rounding meet with a tolerance', async () => {
+  // A grid that is turned by 0.1, with its diagonals and a needle.
+  const turned = ([x, y]) => [Math.cos(0.1) * x - Math.sin(0.1) * y, Math.sin(0.1) * x + Math.cos(0.1) * y];
+  const positions = Array.from({ length: 9 }, (_, i) => turned([Math.floor(i / 3), i % 3])).flat();
+  const corners = [1, 2, 5, 4, 1, 5, 5, 7, 4, 4, 3, 1, 7, 3, 4, 3, 0, 1, 5, 8, 7, 2, 8, 5, 7, 6, 3];
+  const mesh = { positions, indices: corners, dimension: 2 };
+  const constraints = [3, 5, 1, 7];
+  await assert.rejects(makeDelaunay(mesh, { constraints }), refused('invalid-option', /crosses constraint 0/));
+  const session = await FlipSession.create(mesh, { backend: 'cpu', constraints, constraintTolerance: 1e-15 });
+  const result = await session.run();
+  assert.deepEqual([...result.constraintEdges], [3, 4, 4, 5, 1, 4, 4, 7]);
+  assert.ok(result.constraintDeviation > 0 && result.constraintDeviation < 1e-15, String(result.constraintDeviation));
+  const { violations, remaining } = await session.verify();
+  assert.deepEqual([violations, remaining], [[], result.remaining]);
+  session.free();
+  const { constraintEdges, deviation } = await constrain(mesh, constraints, {}, false, 1e-15);
+  assert.deepEqual([constraintEdges, deviation], [result.constraintEdges, result.constraintDeviation]);
+  await assert.rejects(constrain(mesh, constraints, {}, false, '1'), refused('invalid-input', /tolerance.*number/));
+});
+
 test('the audit knows which path a constraint has taken, and which constraints were left out', async () => {
   // An edge leads from 0 to 1 on the line to 2, and none goes on from there.
   const mesh = { positions: Float32Array.of(0, 0, 1, 0, 2, 0, 0, 2, 0, -1), indices: [0, 2, 3, 0, 4, 1], dimension: 2 };

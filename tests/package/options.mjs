@@ -78,6 +78,16 @@ export const cases = {
     const { crossedEdges, leftOut } = await given.makeDelaunay(SQUARE, { ...given.base, constraints: [1, 3] });
     check(crossedEdges === 1 && leftOut.length === 0, `${crossedEdges} edges crossed, ${leftOut.length} left out`);
   },
+  constraintTolerance: async (given) => {
+    const options = { ...given.base, constraints: [0, 2] };
+    await isRefused({ ...given, mesh: SQUARE, base: options }, 'constraintTolerance', -1);
+    const { constraintEdges, constraintDeviation } = await given.makeDelaunay(SQUARE, {
+      ...options,
+      constraintTolerance: 0.5,
+    });
+    const isNear = Math.abs(constraintDeviation - 0.7 / Math.SQRT2) < 1e-6;
+    check(constraintEdges.join() === '0,1,1,2' && isNear, `${constraintEdges.join()}, ${constraintDeviation}`);
+  },
   skipConstraints: async (given) => {
     const options = { ...given.base, constraints: [1, 3, 2, 0] };
     await isRefused({ ...given, mesh: SQUARE }, 'constraints', options.constraints);

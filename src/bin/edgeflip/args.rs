@@ -165,6 +165,13 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub constraints: Option<PathBuf>,
 
+    /// The largest distance of a vertex from an edge of --constraints that counts as on it
+    ///
+    /// In the units of the coordinates. The edge then goes through the vertex, so that edges meet which miss their
+    /// common vertex by rounding. The summary and --json (deviation) give the largest of these distances.
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.0, requires = "constraints")]
+    pub constraint_tolerance: f64,
+
     /// Leave out the edges of --constraints that cannot be brought in
     ///
     /// The summary counts them, and --json lists them.
@@ -238,8 +245,8 @@ pub struct Args {
     /// crossing_polygons (the numbers of faces, see the notes), points (null for a mesh: heights, whether they have a
     /// third coordinate; hull, the points on it, counter-clockwise; duplicates, each point that equals an earlier one,
     /// and that one), backend, adapter, fallback, status (done or stopped), iterations, flips, crossed_edges (that made
-    /// way for constraints), new_vertices and deviation (of --split-crossings: their number, and how far an edge of the
-    /// list is at most from its way through the result), left_out (for each constraint left out, its index in the list
+    /// way for constraints), new_vertices (of --split-crossings), deviation (how far an edge of the list is at most from
+    /// its way through the result, with --split-crossings or --constraint-tolerance), left_out (for each constraint left out, its index in the list
     /// and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
     /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
     /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),
@@ -328,6 +335,7 @@ impl Args {
             max_normal_angle: self.max_normal_angle,
             max_deviation: self.max_deviation,
             max_iterations: self.max_iterations,
+            constraint_tolerance: self.constraint_tolerance,
             skips_constraints: self.skip_constraints,
             untangle: self.untangle.then_some(true),
             threads: self.threads,

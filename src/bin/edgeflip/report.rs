@@ -171,7 +171,7 @@ impl Report {
             flips: outcome.flips,
             crossed_edges: outcome.crossed_edges,
             new_vertices: 0,
-            deviation: 0.0,
+            deviation: outcome.constraint_deviation,
             left_out: outcome.left_out,
             lost_edges: outcome.lost_edges,
             flips_per_iteration: outcome.flips_per_iteration,
@@ -222,7 +222,7 @@ impl Report {
     pub fn with_split(mut self, split: Option<&SplitCrossings>) -> Self {
         if let Some(SplitCrossings { crossings, deviation, left_out, .. }) = split {
             self.new_vertices = crossings.len();
-            self.deviation = *deviation;
+            self.deviation += *deviation;
             self.left_out.clone_from(left_out);
         }
         self
@@ -336,6 +336,9 @@ impl Report {
         if self.crossed_edges > 0 {
             let edges = HumanCount(self.crossed_edges);
             line("inserted", format!("constraints, which crossed {edges} edges"));
+        }
+        if self.deviation > 0.0 && self.new_vertices == 0 {
+            line("tolerated", format!("vertices up to {} from constraints", short(self.deviation)));
         }
         if self.new_vertices > 0 {
             let count = HumanCount(self.new_vertices as u64);

@@ -3,13 +3,16 @@
 
 pub(crate) mod crossings;
 mod insert;
+mod near;
 mod rounds;
 mod state;
 #[cfg(test)]
 mod tests;
 mod walk;
 
+use crate::error::number;
 use crate::mesh::named_edges::{LeftOut, half_edges, ordered};
+use crate::predicates::distance_from_segment;
 use crate::system::threads::Threads;
 use crate::{Dimension, Error, Mesh};
 use rounds::{Done, Rounds};
@@ -30,6 +33,8 @@ pub struct Constrained {
     pub locks: usize,
     /// How many edges they crossed: each made way for another one.
     pub crossed_edges: u64,
+    /// The largest distance of a vertex from the constraint that goes through it; 0 without a tolerance.
+    pub deviation: f64,
     /// The constraints that were left out, in ascending order.
     pub left_out: Vec<LeftOut>,
 }
@@ -44,23 +49,26 @@ impl Constrained {
 
 /// Brings `constraints` in, each an edge between two vertices, with the result of one after another. A vertex on a
 /// constraint splits it. Constraints may repeat, overlap, and be edges already. `locked_edges` are edges that must not
-/// flip. `threads` is as in [`Options`](crate::Options); it does not change the result.
+/// flip. `tolerance` and `threads` are as [`constraint_tolerance`](crate::Options::constraint_tolerance) and `threads` of
+/// [`Options`](crate::Options); `threads` does not change the result.
 ///
 /// A constraint is an error, or left out if `skips`, if it crosses an earlier constraint, a locked edge, a boundary edge
 /// or a frozen edge, if it leaves the mesh, if it crosses triangles that are not positive, or if its ends are at the same
 /// point.
 ///
 /// # Errors
-/// [`Error::Option`] for a mesh in space, for a vertex that does not exist, for a constraint that cannot be brought in,
+/// [`Error::Option`] for a mesh in space, for a tolerance that is no length, for a vertex that does not exist, for a constraint that cannot be brought in,
 /// for a locked edge that the mesh does not have, and if the threads cannot be started.
 pub fn constrained(
     mesh: &Mesh,
     constraints: &[[u32; 2]],
     locked_edges: &[[u32; 2]],
     skips: bool,
+    tolerance: f64,
     threads: Option<NonZeroUsize>,
 ) -> Result<Constrained, Error> {
     check_constraints(mesh, constraints)?;
+    check_tolerance(tolerance)?;
     let threads = Threads::new(threads, mesh.triangle_count())?;
     let locked = half_edges(mesh, locked_edges)?;
     let run = || {
@@ -71,21 +79,29 @@ pub fn constrained(
             constraints,
             origins: HashMap::new(),
             edges: Vec::new(),
+            crossed_edges: 0,
             left_out: Vec::new(),
         };
-        let crossed_edges = work.run(Rounds::new(constraints.len(), threads.clone()), skips);
-        (work.state.triangles, work.edges, work.left_out, crossed_edges)
+        let rounds = Rounds::new(constraints.len(), threads.clone());
+        if tolerance > 0.0 {
+            work.run_near(rounds, skips, tolerance);
+        } else {
+            work.run(rounds, skips);
+        }
+        let Work { state, edges, crossed_edges, left_out, .. } = work;
+        (state.triangles, edges, crossed_edges, left_out)
     };
-    let (triangles, mut edges, mut left_out, crossed_edges) = threads.enter(run);
+    let (triangles, mut edges, crossed_edges, mut left_out) = threads.enter(run);
     left_out.sort_by_key(|left| left.index);
     if let Some(LeftOut { reason, .. }) = left_out.first().filter(|_| !skips) {
         return Err(refused(reason.clone()));
     }
     edges.sort_by_key(|&(index, _)| index);
+    let deviation = if tolerance > 0.0 { deviation(mesh, constraints, &edges, tolerance) } else { 0.0 };
     let edges = edges.into_iter().map(|(_, ends)| ends);
     let locks = locked_edges.len();
     let locked_edges = locked_edges.iter().copied().chain(edges).collect();
-    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, crossed_edges, left_out })
+    Ok(Constrained { mesh: mesh.flipped(triangles), locked_edges, locks, crossed_edges, deviation, left_out })
 }
 
 /// # Errors
@@ -103,6 +119,26 @@ fn check_constraints(mesh: &Mesh, constraints: &[[u32; 2]]) -> Result<(), Error>
         return Err(refused(message));
     }
     Ok(())
+}
+
+/// # Errors
+/// [`Error::Option`] for a number that is no length.
+pub(crate) fn check_tolerance(tolerance: f64) -> Result<(), Error> {
+    if tolerance >= 0.0 && tolerance < f64::INFINITY {
+        return Ok(());
+    }
+    let message = format!("{} is not a length: give 0 or more", number(tolerance));
+    Err(Error::Option { option: "constraint_tolerance", message })
+}
+
+/// The largest distance of a vertex from the constraint that goes through it, or `most` where f64 cannot hold it. `edges`
+/// have the indices of their constraints.
+fn deviation(mesh: &Mesh, constraints: &[[u32; 2]], edges: &[(usize, [u32; 2])], most: f64) -> f64 {
+    let distance = |&(index, [_, to]): &(usize, [u32; 2])| {
+        let line = constraints[index].map(|v| mesh.point2(v));
+        distance_from_segment(line, mesh.point2(to)).unwrap_or(most)
+    };
+    edges.iter().map(distance).fold(0.0, f64::max)
 }
 
 fn refused(message: String) -> Error {
@@ -128,31 +164,50 @@ struct Work<'a> {
     origins: HashMap<[u32; 2], usize>,
     /// The edges of the constraints, with their indices.
     edges: Vec<(usize, [u32; 2])>,
+    /// The number of edges that they crossed.
+    crossed_edges: u64,
     left_out: Vec<LeftOut>,
 }
 
 impl Work<'_> {
-    /// Brings all in, or those before the first obstacle. Returns the number of edges that they crossed.
-    fn run(&mut self, mut rounds: Rounds, skips: bool) -> u64 {
-        let mut all = 0;
+    /// Brings all in, or those before the first obstacle.
+    fn run(&mut self, mut rounds: Rounds, skips: bool) {
         while let Some(round) = rounds.next(&mut self.state, &self.directed) {
-            for Done { index, edges, crossed } in round {
-                all += crossed as u64;
-                match edges {
-                    Ok(edges) => self.lock(index, edges),
-                    Err(obstacle) => {
-                        let [u, v] = self.constraints[index];
-                        let reason =
-                            format!("constraint {index} between {u} and {v} {}", self.what(obstacle));
-                        self.left_out.push(LeftOut { index, reason });
-                        if !skips {
-                            rounds.end_at(index);
-                        }
-                    }
+            for done in round {
+                let index = done.index;
+                if !self.take(done) && !skips {
+                    rounds.end_at(index);
                 }
             }
         }
-        all
+    }
+
+    /// The same, each through the vertices near it.
+    fn run_near(&mut self, rounds: Rounds, skips: bool, tolerance: f64) {
+        for (index, &ends) in self.directed.clone().iter().enumerate() {
+            let chain = self.state.chain(ends, tolerance);
+            let done = rounds.bring_in_chain(&mut self.state, index, &chain);
+            if !self.take(done) && !skips {
+                return;
+            }
+        }
+    }
+
+    /// Notes what became of a constraint. Returns whether it came in.
+    fn take(&mut self, Done { index, edges, crossed }: Done) -> bool {
+        self.crossed_edges += crossed as u64;
+        match edges {
+            Ok(edges) => {
+                self.lock(index, edges);
+                true
+            }
+            Err(obstacle) => {
+                let [u, v] = self.constraints[index];
+                let reason = format!("constraint {index} between {u} and {v} {}", self.what(obstacle));
+                self.left_out.push(LeftOut { index, reason });
+                false
+            }
+        }
     }
 
     fn lock(&mut self, index: usize, mut edges: Vec<([u32; 2], u32)>) {

@@ -83,6 +83,28 @@ impl Rounds {
         Some(self.bring_in(state, free))
     }
 
+    /// Brings in a constraint through vertices, from each to the next. At an obstacle, triangles before it have changed.
+    pub(super) fn bring_in_chain(&self, state: &mut State, index: usize, chain: &[u32]) -> Done {
+        let mut crossed = 0;
+        let mut bring_in = || {
+            let mut edges = Vec::new();
+            for (&from, &to) in chain.iter().zip(&chain[1..]) {
+                let walk = state.walk([from, to], usize::MAX).map(|walk| (index, walk));
+                for done in self.bring_in(state, Vec::from_iter(walk)) {
+                    crossed += done.crossed;
+                    edges.extend(done.edges?);
+                }
+            }
+            // A later step may have renumbered the half-edges of an earlier one, or crossed it where the mesh overlaps.
+            for (ends, h) in &mut edges {
+                *h = state.half_edge(*ends).ok_or(Obstacle::Doubled(*ends))?;
+            }
+            Ok(edges)
+        };
+        let edges = bring_in();
+        Done { index, edges, crossed }
+    }
+
     /// Brings in constraints that are apart.
     fn bring_in(&self, state: &mut State, mut free: Vec<(usize, Walk)>) -> Vec<Done> {
         let changed: Vec<_> = free.iter_mut().map(|(_, walk)| mem::take(&mut walk.crossed)).collect();

@@ -1,7 +1,7 @@
 //! A mesh in the plane whose edges are locked, and make way for others.
 
 use crate::mesh::embedded::Embedded;
-use crate::mesh::half_edge::{LOCKED, lock, next, unflagged};
+use crate::mesh::half_edge::{LOCKED, lock, next, prev, unflagged};
 use crate::mesh::star::{Fans, Star};
 use crate::predicates::area_sign;
 use crate::system::threads::{Threads, shared};
@@ -129,6 +129,11 @@ impl<'a> State<'a> {
         let fans =
             self.fans.get_or_init(|| Fans::new(self.mesh.vertex_count(), &self.triangles, &self.twins));
         Star::new(&self.triangles, &self.twins, fans, corner)
+    }
+
+    /// A half-edge of the edge between two vertices, of which the first has triangles.
+    pub(super) fn half_edge(&self, [u, v]: [u32; 2]) -> Option<u32> {
+        self.star(u).flat_map(|h| [h, prev(h)]).find(|&h| self.ends(h).contains(&v))
     }
 
     pub(super) fn sign(&self, corners: [u32; 3]) -> Ordering {

@@ -35,20 +35,22 @@ pub fn constrain(
     constraints: &Uint32Array,
     locks: &JsLocks,
     skips: bool,
+    tolerance: f64,
 ) -> Result<JsValue, JsValue> {
     let work = || {
         let mesh = mesh(positions, indices, dimension)?;
         let locked_edges = edges(&mesh, locks)?;
-        constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips, None)
+        constrained(&mesh, &pairs("constraints", constraints)?, &locked_edges, skips, tolerance, None)
     };
     let result = work().map_err(thrown)?;
     let constraint_edges = Uint32Array::from(result.constraint_edges().as_flattened());
-    let Constrained { mesh, locked_edges, crossed_edges, left_out, .. } = result;
+    let Constrained { mesh, locked_edges, crossed_edges, deviation, left_out, .. } = result;
     Ok(object([
         ("indices", Uint32Array::from(mesh.triangles()).into()),
         ("lockedEdges", Uint32Array::from(locked_edges.as_flattened()).into()),
         ("constraintEdges", constraint_edges.into()),
         ("crossedEdges", (crossed_edges as f64).into()),
+        ("deviation", deviation.into()),
         ("leftOut", left_out_list(&left_out)),
     ]))
 }

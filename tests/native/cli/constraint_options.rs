@@ -42,6 +42,33 @@ fn constraints_are_brought_in() {
     failed(&with(&[]), 1, &line);
 }
 
+/// Vertex 1 is 0.7 / √2 away from the line between 0 and 2.
+#[test]
+fn a_near_vertex_counts_as_on_a_constraint() {
+    let folder = Folder::new();
+    let (input, output) = (folder.file("in.off", SQUARE), folder.path("out.off"));
+    let list = folder.file("list.txt", "0 2\n1 3\n");
+    let list = ["--constraints", list.to_str().unwrap()];
+    let with = |more: &[&str]| run(&input, &output, &[&list, more].concat());
+    assert!(text(&with(&[]).stderr).contains("crosses constraint 0"));
+    let ran = with(&["--constraint-tolerance", "0.5", "--json", "--verify"]);
+    let found: Value = serde_json::from_slice(&ran.stdout).unwrap();
+    assert_eq!((&found["left_out"], &found["audit"]), (&json!([]), &json!([])));
+    let deviation = found["deviation"].as_f64().unwrap();
+    assert!((deviation - 0.7 / 2f64.sqrt()).abs() < 1e-6, "{deviation}");
+    let summary = with(&["--constraint-tolerance", "0.5"]);
+    assert!(
+        text(&summary.stderr).contains("\ntolerated  vertices up to 0.4950 from constraints\n"),
+        "{}",
+        text(&summary.stderr)
+    );
+    failed(
+        &with(&["--constraint-tolerance=-1"]),
+        2,
+        "option --constraint-tolerance: -1 is not a length: give 0 or more",
+    );
+}
+
 /// Vertex 1 is on the constraint between 0 and 2, and an edge goes there, but none goes on from it.
 #[test]
 fn a_constraint_beside_a_dead_end_passes_the_audit() {

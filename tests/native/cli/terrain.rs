@@ -232,8 +232,8 @@ fn a_constrained_plan_gives_the_terrain_its_triangles() {
     let terrain = Terrain::new("random 10", 9);
     let surface = terrain.in_plane(Plane::Yz);
     let plan = surface.plan(Plane::Yz).unwrap();
-    let made = constrained(&plan, &[[0, 99]], &[], false, None).unwrap();
-    assert_eq!(made, constrained(&terrain.plan, &[[0, 99]], &[], false, None).unwrap());
+    let made = constrained(&plan, &[[0, 99]], &[], false, 0.0, None).unwrap();
+    assert_eq!(made, constrained(&terrain.plan, &[[0, 99]], &[], false, 0.0, None).unwrap());
     let carried = surface.with_triangles(made.mesh.triangles().to_vec()).unwrap();
     assert_eq!(bits(carried.positions()), bits(surface.positions()));
 }

@@ -114,7 +114,7 @@ fn with_chain(chain: &[Place], is_hole: bool) -> Scene {
         (0..if is_hole { count } else { count - 1 }).map(|i| [vertex(i), vertex(i + 1)]).collect();
     let numbers = numbers(&scene.places);
     let mesh = Mesh::new(Dimension::Two, numbers.clone(), delaunay(&numbers)).unwrap();
-    let made = constrained(&mesh, &edges, &[], false, None).unwrap();
+    let made = constrained(&mesh, &edges, &[], false, 0.0, None).unwrap();
     scene.triangles = made.mesh.triangles().to_vec();
     if is_hole {
         let is_in_hole = |t: &[u32]| t.iter().all(|&v| (RING..RING + count).contains(&(v as usize)));

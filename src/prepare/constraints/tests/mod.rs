@@ -2,6 +2,7 @@
 
 mod dirty;
 mod long;
+mod near;
 
 use super::*;
 use crate::families;
@@ -64,8 +65,8 @@ fn assert_valid(before: &Mesh, after: &Mesh) {
 
 /// Brings constraints in. The number of threads must not matter.
 fn brought_in(mesh: &Mesh, constraints: &[Pair], locked: &[Pair], skips: bool) -> Result<Constrained, Error> {
-    let [first, others @ ..] =
-        [1, 2, 5].map(|threads| constrained(mesh, constraints, locked, skips, NonZeroUsize::new(threads)));
+    let [first, others @ ..] = [1, 2, 5]
+        .map(|threads| constrained(mesh, constraints, locked, skips, 0.0, NonZeroUsize::new(threads)));
     for other in others {
         match (&first, other) {
             (Ok(first), Ok(other)) => assert_eq!(*first, other),
