@@ -11,9 +11,9 @@ const root = fileURLToPath(new URL('..', import.meta.url));
 /** The most bytes after gzip. */
 const BUDGETS = {
   'edgeflip_bg.wasm': 172 * 1024,
-  edgeflip: 23 * 1024,
+  edgeflip: 22 * 1024,
   'edgeflip/inline': 1.4 * 140 * 1024,
-  'edgeflip/worker': 2_000,
+  'edgeflip/worker': 2_700,
   'edgeflip/files': 6_000,
   'edgeflip/three': 6_000,
   'edgeflip/gltf-transform': 6_000,

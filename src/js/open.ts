@@ -5,8 +5,7 @@ import { messageOf } from './given.js';
 import { isLoaded, loadCore, moduleOfThreads } from './load.js';
 import { copied, type IndexedMesh } from './mesh.js';
 import type { GpuSettings, Settings } from './settings.js';
-import { spareFor } from './spare.js';
-import { type ModuleSession, ThreadsSession, threadsOf } from './threads.js';
+import type { ModuleSession } from './threads.js';
 import { Session, whyCpu } from './wasm/edgeflip.js';
 
 /** A session, and why it has one thread of the CPU if it could use more. */
@@ -54,8 +53,15 @@ type Arrays = [IndexedMesh['positions'], Uint32Array, IndexedMesh['dimension']];
 async function openAlone(mesh: IndexedMesh, settings: GpuSettings, settles = false): Promise<ModuleSession> {
   const given = isLoaded() ? mesh : await whileLoading(mesh);
   const { positions, indices, dimension } = given;
-  const spare = !settles && indices.length >= FEWEST_SPARE ? spareFor(given, settings) : undefined;
+  const spare = !settles && indices.length >= FEWEST_SPARE ? spareOf(given, settings) : undefined;
   return Session.create(positions, indices, dimension, { ...settings, spare } as GpuSettings, settles);
+}
+
+/** The arrays are not read after a wait. */
+async function spareOf({ positions, indices: { length }, dimension }: IndexedMesh, settings: GpuSettings) {
+  const shape = { dimension, isDouble: positions instanceof Float64Array };
+  const { spareFor } = await import('./spare.js');
+  return spareFor(length, shape, settings);
 }
 
 /** The fewest indices of a mesh for whose result a worker makes the memory. */
@@ -70,12 +76,15 @@ async function whileLoading(mesh: IndexedMesh): Promise<IndexedMesh> {
 
 /** Transfers the arrays of the mesh. If the threads cannot be started, one thread gives the same result. */
 async function openOnThreads(mesh: IndexedMesh, settings: Settings, count: number, fallback?: string): Promise<Opened> {
-  let threads: Awaited<ReturnType<typeof threadsOf>>;
+  let start: () => Promise<ModuleSession>;
   try {
-    threads = await threadsOf(await moduleOfThreads(), count);
+    // Most runs do not need the script.
+    const [{ ThreadsSession, threadsOf }, module] = await Promise.all([import('./threads.js'), moduleOfThreads()]);
+    const threads = await threadsOf(module, count);
+    start = () => ThreadsSession.create(threads, count, mesh, settings, fallback);
   } catch (thrown) {
     const alone = `the workers could not be started (${messageOf(thrown)})`;
     return { session: await openAlone(mesh, settings), alone };
   }
-  return { session: await ThreadsSession.create(threads, count, mesh, settings, fallback) };
+  return { session: await start() };
 }

@@ -12,6 +12,12 @@ import type { Calls } from './thread.js';
 import { script } from './threads.js';
 import { whyCpu } from './wasm/edgeflip.js';
 
+/** What decides whether a mesh goes to a GPU, besides its size. */
+interface Shape {
+  dimension: IndexedMesh['dimension'];
+  isDouble: boolean;
+}
+
 let worker: Remote<Calls> | undefined;
 let isReady = false;
 
@@ -28,22 +34,22 @@ function start(): void {
 }
 
 /**
- * Memory for the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other meshes, and if no
+ * Memory for so many indices, the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other meshes, and if no
  * worker can make it, or not yet.
  */
 export function spareFor(
-  { positions, indices, dimension }: IndexedMesh,
+  indices: number,
+  { dimension, isDouble }: Shape,
   settings: GpuSettings,
 ): Promise<Uint32Array | undefined> | undefined {
   const { backend = 'auto', order, leavesCpu, device } = settings;
   // On a device of the page, triangles mostly stay.
   if (device || order === 'any' || (backend !== 'auto' && backend !== 'webgpu')) return undefined;
   const isSure = leavesCpu || backend === 'webgpu';
-  const isDouble = positions instanceof Float64Array;
-  if (!isSure && whyCpu(indices.length / 3, dimension, isDouble, 1, settings) !== undefined) return undefined;
+  if (!isSure && whyCpu(indices / 3, dimension, isDouble, 1, settings) !== undefined) return undefined;
   try {
     if (!worker) start();
-    return isReady ? worker!.call('reserve', [indices.length]).catch(() => undefined) : undefined;
+    return isReady ? worker!.call('reserve', [indices]).catch(() => undefined) : undefined;
   } catch {
     return undefined;
   }

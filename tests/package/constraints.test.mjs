@@ -3,6 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import Delaunator from 'delaunator';
 import { EdgeflipError, FlipSession, makeDelaunay } from 'edgeflip';
 import { constrain, generate, regions } from 'edgeflip/files';
 import { triangulate } from 'edgeflip/points';
@@ -75,6 +76,46 @@ test('lines that miss their common vertex by rounding meet with a tolerance', as
   const { constraintEdges, deviation } = await constrain(mesh, constraints, {}, false, 1e-15);
   assert.deepEqual([constraintEdges, deviation], [result.constraintEdges, result.constraintDeviation]);
   await assert.rejects(constrain(mesh, constraints, {}, false, '1'), refused('invalid-input', /tolerance.*number/));
+});
+
+test('untangling mends what delaunator turned over, so that a constraint comes in', async () => {
+  // Two columns of a grid, of an issue of another library.
+  const positions = Float64Array.of(
+    0,
+    0,
+    0.9843345352665859,
+    0.17631086943666954,
+    0.17631086943666954,
+    -0.9843345352665859,
+    1.1606454047032555,
+    -0.8080236658299164,
+    0.3526217388733391,
+    -1.9686690705331717,
+    1.336956274139925,
+    -1.7923582010965022,
+    0.5289326083100087,
+    -2.9530036057997577,
+    1.5132671435765945,
+    -2.776692736363088,
+    0.7052434777466782,
+    -3.9373381410663435,
+    1.689578013013264,
+    -3.7610272716296738,
+    0.8815543471833477,
+    -4.921672676332929,
+    1.8658888824499336,
+    -4.74536180689626,
+  );
+  const mesh = { positions, indices: new Delaunator(positions).triangles, dimension: 2 };
+  const given = { backend: 'cpu', constraints: [10, 2] };
+  await assert.rejects(makeDelaunay(mesh, given), refused('invalid-option', /untangle may mend that$/));
+  for (const [constraintTolerance, edges] of [
+    [0, [10, 2]],
+    [1e-14, [10, 8, 8, 6, 6, 4, 4, 2]],
+  ]) {
+    const { constraintEdges } = await makeDelaunay(mesh, { ...given, untangle: true, constraintTolerance });
+    assert.deepEqual([...constraintEdges], edges);
+  }
 });
 
 test('the audit knows which path a constraint has taken, and which constraints were left out', async () => {

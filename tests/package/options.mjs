@@ -83,10 +83,11 @@ export const cases = {
     await isRefused({ ...given, mesh: SQUARE, base: options }, 'constraintTolerance', -1);
     const { constraintEdges, constraintDeviation } = await given.makeDelaunay(SQUARE, {
       ...options,
-      constraintTolerance: 0.5,
+      constraintTolerance: 0.8,
     });
-    const isNear = Math.abs(constraintDeviation - 0.7 / Math.SQRT2) < 1e-6;
-    check(constraintEdges.join() === '0,1,1,2' && isNear, `${constraintEdges.join()}, ${constraintDeviation}`);
+    // From right to left through the two vertices beside its middle.
+    const isNear = Math.abs(constraintDeviation - Math.SQRT1_2) < 1e-15;
+    check(constraintEdges.join() === '0,1,1,3,3,2' && isNear, `${constraintEdges.join()}, ${constraintDeviation}`);
   },
   skipConstraints: async (given) => {
     const options = { ...given.base, constraints: [1, 3, 2, 0] };

@@ -11,10 +11,11 @@ pub struct Failure {
 }
 
 /// What messages about files end with, and the same with a flag.
-const ENDS: [[&str; 2]; 3] = [
+const ENDS: [[&str; 2]; 4] = [
     ["external_files allows it", "--external-files allows it"],
     ["max_bytes sets the limit", "--max-bytes sets the limit"],
     ["a terrain needs plane", "a terrain needs --plane"],
+    ["untangle may mend that", "--untangle may mend that"],
 ];
 
 impl Failure {

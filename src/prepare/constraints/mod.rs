@@ -124,7 +124,7 @@ fn check_constraints(mesh: &Mesh, constraints: &[[u32; 2]]) -> Result<(), Error>
 /// # Errors
 /// [`Error::Option`] for a number that is no length.
 pub(crate) fn check_tolerance(tolerance: f64) -> Result<(), Error> {
-    if tolerance >= 0.0 && tolerance < f64::INFINITY {
+    if (0.0..f64::INFINITY).contains(&tolerance) {
         return Ok(());
     }
     let message = format!("{} is not a length: give 0 or more", number(tolerance));

@@ -109,11 +109,13 @@ impl Obstacle {
             Self::SameVertex => "joins a vertex to itself; remove it from the list".to_owned(),
             Self::SamePoint => "joins two vertices at the same point; weld them first".to_owned(),
             Self::Leaves(vertex) => format!("leaves the mesh at vertex {vertex}"),
-            Self::Folded(triangle) => format!("crosses triangle {triangle}, which is flat or turned over"),
+            Self::Folded(triangle) => {
+                format!("crosses triangle {triangle}, which is flat or turned over; untangle may mend that")
+            }
             Self::Covered(vertex) => {
                 format!(
-                    "reaches the point of vertex {vertex} in triangles without it; triangles overlap there, or \
-                     another vertex has that point"
+                    "reaches the point of vertex {vertex} in triangles without it: another vertex has that point, or \
+                     triangles overlap there; untangle may mend that"
                 )
             }
             Self::Doubled([a, b]) => {

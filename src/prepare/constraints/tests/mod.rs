@@ -269,7 +269,7 @@ fn errors_name_the_constraint_and_what_it_meets() {
     assert_eq!(result.locked_edges, [[5, 0], [2, 7]]);
 
     let folded = mesh.with_triangles(vec![0, 1, 5, 0, 5, 2, 4, 9, 8]).unwrap();
-    let what = "constraint 0 between 1 and 4 crosses triangle 1, which is flat or turned over";
+    let what = "constraint 0 between 1 and 4 crosses triangle 1, which is flat or turned over; untangle may mend that";
     assert_refused(&folded, &[[1, 4]], &[], what);
     let surface = Mesh::new(Dimension::Three, vec![0.0; 9], vec![0, 1, 2]).unwrap();
     assert!(brought_in(&surface, &[[0, 1]], &[], true).is_err());
