@@ -313,7 +313,8 @@ test('locked triangles and groups keep their borders, and constraints come into 
   // Without it, the constraint meets a triangle that is turned over.
   await assert.rejects(here.makeDelaunay({ ...mesh, positions }, { ...onCpu, constraints: [11, 88] }), {
     code: 'invalid-option',
-    message: /^option constraints: constraint 0 between 11 and 88 crosses triangle \d+, which is flat or turned over; untangle may mend that$/,
+    message:
+      /^option constraints: constraint 0 between 11 and 88 crosses triangle \d+, which is flat or turned over; untangle may mend that$/,
   });
   await assert.rejects(here.makeDelaunay({ ...mesh, positions }, { ...onCpu, lockedEdges: [0, 99], untangle: true }), {
     code: 'invalid-option',

@@ -20,7 +20,7 @@ impl State<'_> {
             return vec![from, to];
         }
         let strip = Strip::new(line, tolerance);
-        let (mut inside, mut seen) = (HashSet::new(), HashSet::new());
+        let (mut inside, mut seen) = (Vec::new(), HashSet::new());
         let mut open: Vec<u32> = [from, to].into_iter().flat_map(|v| self.star(v)).map(|h| h / 3).collect();
         while let Some(t) = open.pop() {
             if !seen.insert(t) {
@@ -29,14 +29,13 @@ impl State<'_> {
             for h in 3 * t..3 * t + 3 {
                 let [p, q] = [h, next(h)].map(|x| self.mesh.point2(self.vertex(x)));
                 if strip.has(p) {
-                    inside.insert(self.vertex(h));
+                    inside.push(self.vertex(h));
                 }
                 if strip.sides(p) & strip.sides(q) == 0 && self.twin(h) != NONE {
                     open.push(self.twin(h) / 3);
                 }
             }
         }
-        let mut inside = Vec::from_iter(inside);
         inside.sort_unstable_by(|&p, &q| {
             let [at, other] = [p, q].map(|v| self.mesh.point2(v));
             let order = compare_along(line, at, other).then_with(|| compare_across(line, at, other));
