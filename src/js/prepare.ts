@@ -4,6 +4,7 @@ import { type Constrained, constrain, reorient, weld, type Welded } from './file
 import { moduleOfUntangler } from './load.js';
 import { type IndexedMesh, inSpace, type ReadMesh } from './mesh.js';
 import type { Settings } from './settings.js';
+import { Turns } from './turn.js';
 import { started } from './untangler.js';
 
 /** What was done before the run. */
@@ -42,12 +43,15 @@ export interface Prepared extends Preparation {
 
 /**
  * Applies the options `weld`, `reorient`, `untangle` and `constraints`, in this order. The result has the other settings.
+ * The page handles events before and after the constraints come in.
  */
 export async function prepare(
   mesh: ReadMesh,
   { weld: attributes, reorient: turns, constraints, constraintTolerance, skipConstraints, ...settings }: Settings,
 ): Promise<Prepared> {
+  const page = new Turns();
   const prepared = await untangled(mesh, await joined(mesh, settings, attributes, turns));
+  await page.give();
   if (!constraints) return prepared;
   const { lockedEdges, lockedTriangles, groups, ...others } = prepared.settings;
   const { indices, welded } = prepared;
@@ -61,6 +65,8 @@ export async function prepare(
     skipConstraints,
     constraintTolerance,
   );
+  const ms = performance.now() - start;
+  await page.give();
   const ofLocks = made.lockedEdges.length - constraintEdges.length;
   return {
     ...prepared,
@@ -68,7 +74,7 @@ export async function prepare(
       crossedEdges,
       deviation,
       leftOut,
-      ms: performance.now() - start,
+      ms,
       edgesIn: (indices, joined) => edgesIn(constraintEdges, indices, joined),
     },
     before: {
