@@ -168,8 +168,8 @@ async function head() {
   return io.writeBinary(file);
 }
 
-/** The most triangles of a surface in a thumbnail. */
-const DRAWN = 1200;
+/** The most triangles of a surface in a thumbnail; those of a terrain are all seen, from further above. */
+const [DRAWN, FEW, ABOVE] = [1200, 420, 0.62];
 
 const FILES = { 'bunny.ply': rabbit, 'flange.obj': flange, 'terrain.obj': terrain, 'suzi.glb': head };
 
@@ -182,9 +182,10 @@ export async function writeModels(folder) {
     writeFileSync(join(folder, 'models', name), bytes);
     meshes.set(`models/${name}`, await readMesh(bytes, name));
   }
-  for (const { spec, thumb, drawn = spec } of SAMPLES) {
+  for (const { spec, thumb, drawn = spec, plane } of SAMPLES) {
     const mesh = meshes.get(drawn) ?? (await generate(drawn));
-    writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
+    const picture = plane ? wireframe(await coarse(mesh, FEW), ABOVE) : wireframe(await coarse(mesh));
+    writeFileSync(join(folder, thumb), picture);
   }
   for (const { thumb, drawn, warp } of MOVING) {
     const mesh = drawn ? warped(await generate(drawn), warp) : await seeds();
@@ -206,9 +207,9 @@ function warped({ positions, indices, dimension }, warp) {
 }
 
 /** The mesh with few enough triangles for a thumbnail. */
-async function coarse(mesh) {
-  if (mesh.dimension === 2 || mesh.indices.length <= 3 * DRAWN) return mesh;
+async function coarse(mesh, most = DRAWN) {
+  if (mesh.dimension === 2 || mesh.indices.length <= 3 * most) return mesh;
   await MeshoptSimplifier.ready;
-  const [indices] = MeshoptSimplifier.simplify(mesh.indices, Float32Array.from(mesh.positions), 3, 3 * DRAWN, 1);
+  const [indices] = MeshoptSimplifier.simplify(mesh.indices, Float32Array.from(mesh.positions), 3, 3 * most, 1);
   return { ...mesh, indices };
 }
