@@ -2,6 +2,7 @@
 
 import { BROUGHT } from '../models/samples.js';
 import type { Opened } from './opening.ts';
+import { widthOf } from './plan.ts';
 import type { Shown } from './shown.ts';
 import { splitName } from './sources.ts';
 
@@ -36,7 +37,7 @@ export function codeFor({ opened, run, settings }: Shown): string {
     ...(isGenerated ? [`const mesh = await generate(${quoted(origin)});`] : linesOfReading(opened)),
     ...(arePoints
       ? [
-          'const { triangles } = await triangulate(mesh.positions, { stride: mesh.dimension });',
+          `const { triangles } = await triangulate(mesh.positions, { stride: ${widthOf(mesh)} });`,
           'mesh.indices = triangles;',
         ]
       : []),
