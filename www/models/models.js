@@ -11,6 +11,7 @@ import initManifold from 'manifold-3d';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createNoise2D } from 'simplex-noise';
 import { generate, readMesh, writeMesh } from '../../dist/files.js';
+import { makeDelaunay } from '../../dist/index.js';
 import { triangulate } from '../../dist/points.js';
 import { MOVING, SAMPLES, sunflower } from './samples.js';
 import { scrambled } from './scramble.js';
@@ -77,7 +78,7 @@ const WATER = [0.42, 0.65, 0.86];
  * A ridge and a river on a grid that is bent along both: noise of the package `simplex-noise`, MIT. The sides of the
  * ridge, the river and the plain are materials, so their borders are locked. The other edges are scrambled.
  */
-function terrain() {
+async function terrain() {
   const noise = createNoise2D(dice(7));
   const random = dice(3);
   const [side, crest, [bank, shore], width] = [52, 17, [36, 38], 0.085];
@@ -134,7 +135,9 @@ function terrain() {
       groups.push(group, group);
     }
   }
-  const triangles = scrambled({ positions: plan, indices, dimension: 2, groups }, 2500, 10, 3);
+  const mesh = { positions: plan, indices, dimension: 2 };
+  const { indices: best } = await makeDelaunay(mesh, { groups, backend: 'cpu' });
+  const triangles = scrambled({ ...mesh, indices: best, groups }, 1200, 10, 3);
   for (const [group, name] of materials.entries()) {
     text.push(`usemtl ${name}`);
     for (const [t, its] of groups.entries()) {
