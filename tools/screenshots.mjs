@@ -122,7 +122,7 @@ const states = {
     await page.waitForFunction(() => document.body.dataset.measured === '1');
   },
   webgpu: async (page) => {
-    await sample(page, 'models/terrain.ply');
+    await sample(page, 'models/terrain.obj');
     await chooseEngine(page, 'webgpu');
     await page.waitForSelector('dd[data-fact=Adapter]', { state: 'attached' });
     await measured(page);

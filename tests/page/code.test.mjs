@@ -82,6 +82,12 @@ test('the code that is copied runs for samples in space, with the limits that ar
   await page.until('the flange', ({ caption, state }) => caption === 'flange.obj' && state !== 'busy');
   const flange = await page.playToEnd();
   assert.equal((await runCopied(page)).fingerprint, flange.facts.Fingerprint);
+
+  // From above.
+  await page.choose('sample', 'models/terrain.obj');
+  await page.until('the terrain', ({ caption, state }) => caption === 'terrain.obj' && state !== 'busy');
+  const terrain = await page.playToEnd();
+  assert.equal((await runCopied(page)).fingerprint, terrain.facts.Fingerprint);
   await page.close();
 });
 

@@ -9,7 +9,7 @@ import { sharedPage } from './page.mjs';
 test('edges that are drawn come in, and stay', async () => {
   const page = await sharedPage();
   await page.page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
-  await page.choose('sample', 'models/terrain.ply');
+  await page.choose('sample', 'models/suzi.glb');
   await page.rest();
   const isShown = (id) => page.page.isVisible(`#${id}`);
   assert.deepEqual([await isShown('draw'), await isShown('limit')], [false, true], 'a surface');

@@ -180,6 +180,9 @@ test('the points of a file become a mesh, with their heights and their colours',
   const want = await triangulate(positions, { stride: 3 });
   assert.deepEqual([opened.caption, opened.facts.Vertices], ['hills.csv', '42']);
   assert.match(opened.note, /Triangulated from 42 points by x and y\. 2 points repeat the x and y of others\./);
+  // Heights do not count, and edges can be drawn.
+  assert.match(opened.status, /^Already Delaunay\./);
+  assert.equal(await page.page.isVisible('#draw'), true);
   const mesh = await page.download();
   assert.deepEqual([mesh.name, mesh.dimension], ['hills-after-0.off', 3]);
   assert.deepEqual([mesh.indices, Float32Array.from(mesh.positions)], [want.triangles, positions]);

@@ -47,7 +47,7 @@ test('a terrain is first seen from above, and other meshes as before', async () 
     await page.page.evaluate(() => (document.getElementById('notice').textContent = ''));
     return (Math.atan2(y, Math.hypot(x, z)) * 180) / Math.PI;
   };
-  const terrain = await height('models/terrain.ply');
+  const terrain = await height('models/terrain.obj');
   assert.ok(terrain > 35 && terrain < 50, `${terrain}° over the horizon`);
   for (const spec of ['models/bunny.ply', 'models/suzi.glb', 'uvsphere 28 0.1']) {
     assert.equal(Math.round(await height(spec)), 15, spec);

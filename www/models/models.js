@@ -11,6 +11,7 @@ import initManifold from 'manifold-3d';
 import { MeshoptSimplifier } from 'meshoptimizer';
 import { createNoise2D } from 'simplex-noise';
 import { generate, readMesh, writeMesh } from '../../dist/files.js';
+import { makeDelaunay } from '../../dist/index.js';
 import { triangulate } from '../../dist/points.js';
 import { MOVING, SAMPLES, sunflower } from './samples.js';
 import { scrambled } from './scramble.js';
@@ -64,29 +65,97 @@ function dice(seed) {
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
 }
 
-/** Mountains on a grid, each cell cut along the same diagonal: noise of the package `simplex-noise`, MIT. */
-function terrain() {
+/** The colours of a terrain by height, from 0 to 1: meadows, rock, and snow. */
+const TINTS = [
+  [0, [0.62, 0.74, 0.56]],
+  [0.35, [0.8, 0.79, 0.62]],
+  [0.7, [0.76, 0.72, 0.68]],
+  [1, [0.97, 0.97, 0.97]],
+];
+const WATER = [0.42, 0.65, 0.86];
+
+/**
+ * A ridge and a river on a grid that is bent along both: noise of the package `simplex-noise`, MIT. The sides of the
+ * ridge, the river and the plain are materials, so their borders are locked. The other edges are scrambled.
+ */
+async function terrain() {
   const noise = createNoise2D(dice(7));
-  const side = 64;
-  const positions = [];
+  const random = dice(3);
+  const [side, crest, [bank, shore], width] = [52, 17, [36, 38], 0.085];
+  // Where the crest and the middle of the river are, from left to right.
+  const ridgeAt = (x) => -0.4 + 0.12 * Math.sin(2.4 * x + 0.7) + 0.04 * Math.sin(6 * x);
+  const riverAt = (x) => 0.4 + 0.15 * Math.sin(2.9 * x - 0.4) + 0.04 * Math.sin(8 * x);
+  const distances = (x, z) => [Math.abs(z - ridgeAt(x)), Math.max(0, Math.abs(z - riverAt(x)) - width / 2)];
+  // The rows of the grid that follow a line, and the lines; the others lie evenly between these.
+  const lines = [
+    [0, () => -1],
+    [crest, ridgeAt],
+    [bank, (x) => riverAt(x) - width / 2],
+    [shore, (x) => riverAt(x) + width / 2],
+    [side, () => 1],
+  ];
+  const depthAt = (row, x) => {
+    const k = Math.max(
+      1,
+      lines.findIndex(([last]) => row <= last),
+    );
+    const [[from, start], [to, end]] = [lines[k - 1], lines[k]];
+    return start(x) + ((row - from) / (to - from)) * (end(x) - start(x));
+  };
+  const heightAt = (x, z) => {
+    const [far, dry] = distances(x, z);
+    const top = 0.5 + 0.14 * noise(1.7 * x, 9) + 0.04 * noise(7 * x, 5);
+    const spurs = 0.3 * (0.5 - Math.abs(noise(2.3 * x, 1.1 * z))) * far * Math.exp(-far / 0.35);
+    const hills = 0.1 * (1 + noise(1.5 * x + 4, 1.5 * z)) + 0.015 * noise(5 * x, 5 * z);
+    const valley = Math.min(1, dry / 0.55);
+    return -0.02 * x + 0.03 * (1 - Math.exp(-dry / 0.03)) + valley * (top * Math.exp(-far / 0.27) + 3 * spurs + hills);
+  };
+  const [text, plan] = [[], []];
   for (let j = 0; j <= side; j++) {
+    const isLine = lines.some(([row]) => row === j);
     for (let i = 0; i <= side; i++) {
-      const [x, z] = [(2 * i) / side - 1, (2 * j) / side - 1];
-      let [y, height, width] = [0, 0.2, 0.75];
-      for (let octave = 0; octave < 5; octave++, height *= 0.42, width *= 2.1) {
-        y += height * (1 - 2 * Math.abs(noise(x * width, z * width)));
-      }
-      positions.push(x, y, z);
+      const away = () => 0.7 * (random() - 0.5);
+      const x = (2 * (i + (i % side === 0 ? 0 : away()))) / side - 1;
+      const z = depthAt(j + (isLine ? 0 : away()), x);
+      const y = heightAt(x, z);
+      const colour = j >= bank && j <= shore ? WATER : tintAt(y / 0.62);
+      text.push(
+        `v ${[x, y, z].map((at) => at.toFixed(4)).join(' ')} ${colour.map((part) => part.toFixed(2)).join(' ')}`,
+      );
+      plan.push(z, x);
     }
   }
-  const indices = [];
+  const materials = ['north', 'south', 'river', 'plain'];
+  const [indices, groups] = [[], []];
   for (let j = 0; j < side; j++) {
     for (let i = 0; i < side; i++) {
       const [a, c] = [j * (side + 1) + i, (j + 1) * (side + 1) + i];
       indices.push(a, c, c + 1, a, c + 1, a + 1);
+      const group = [crest, bank, shore].filter((row) => row <= j).length;
+      groups.push(group, group);
     }
   }
-  return writeMesh({ positions: Float32Array.from(positions), indices, dimension: 3 }, 'terrain.ply');
+  const mesh = { positions: plan, indices, dimension: 2 };
+  const { indices: best } = await makeDelaunay(mesh, { groups, backend: 'cpu' });
+  const triangles = scrambled({ ...mesh, indices: best, groups }, 1200, 10, 3);
+  for (const [group, name] of materials.entries()) {
+    text.push(`usemtl ${name}`);
+    for (const [t, its] of groups.entries()) {
+      if (its === group) text.push(`f ${[...triangles.slice(3 * t, 3 * t + 3)].map((v) => v + 1).join(' ')}`);
+    }
+  }
+  return Buffer.from(`${text.join('\n')}\n`);
+}
+
+/** The colour at a height from 0 to 1, between those of {@link TINTS}. */
+function tintAt(height) {
+  const at = Math.min(1, Math.max(0, height));
+  const k = Math.max(
+    1,
+    TINTS.findIndex(([least]) => at <= least),
+  );
+  const [[from, low], [to, high]] = [TINTS[k - 1], TINTS[k]];
+  return low.map((part, channel) => part + ((at - from) / (to - from)) * (high[channel] - part));
 }
 
 /** A head by the Blender project, subdivided: package `@pmndrs/assets`, CC0. Without compression, as edgeflip reads it. */
@@ -102,10 +171,10 @@ async function head() {
   return io.writeBinary(file);
 }
 
-/** The most triangles of a surface in a thumbnail. */
-const DRAWN = 1200;
+/** The most triangles of a surface in a thumbnail; those of a terrain are all seen, from further above. */
+const [DRAWN, FEW, ABOVE] = [1200, 420, 0.62];
 
-const FILES = { 'bunny.ply': rabbit, 'flange.obj': flange, 'terrain.ply': terrain, 'suzi.glb': head };
+const FILES = { 'bunny.ply': rabbit, 'flange.obj': flange, 'terrain.obj': terrain, 'suzi.glb': head };
 
 /** Writes the files into `models/` and the thumbnails of all samples into `thumbs/`. */
 export async function writeModels(folder) {
@@ -116,9 +185,10 @@ export async function writeModels(folder) {
     writeFileSync(join(folder, 'models', name), bytes);
     meshes.set(`models/${name}`, await readMesh(bytes, name));
   }
-  for (const { spec, thumb, drawn = spec } of SAMPLES) {
+  for (const { spec, thumb, drawn = spec, plane } of SAMPLES) {
     const mesh = meshes.get(drawn) ?? (await generate(drawn));
-    writeFileSync(join(folder, thumb), wireframe(await coarse(mesh)));
+    const picture = plane ? wireframe(await coarse(mesh, FEW), ABOVE) : wireframe(await coarse(mesh));
+    writeFileSync(join(folder, thumb), picture);
   }
   for (const { thumb, drawn, warp } of MOVING) {
     const mesh = drawn ? warped(await generate(drawn), warp) : await seeds();
@@ -140,9 +210,9 @@ function warped({ positions, indices, dimension }, warp) {
 }
 
 /** The mesh with few enough triangles for a thumbnail. */
-async function coarse(mesh) {
-  if (mesh.dimension === 2 || mesh.indices.length <= 3 * DRAWN) return mesh;
+async function coarse(mesh, most = DRAWN) {
+  if (mesh.dimension === 2 || mesh.indices.length <= 3 * most) return mesh;
   await MeshoptSimplifier.ready;
-  const [indices] = MeshoptSimplifier.simplify(mesh.indices, Float32Array.from(mesh.positions), 3, 3 * DRAWN, 1);
+  const [indices] = MeshoptSimplifier.simplify(mesh.indices, Float32Array.from(mesh.positions), 3, 3 * most, 1);
   return { ...mesh, indices };
 }

@@ -2,9 +2,9 @@
 
 /**
  * `spec` names a family of the crate, or a file that `models.js` writes; `drawn` is the mesh of its thumbnail, if it is
- * another one. `beta` is the β that suits it, if it is not that of most meshes.
+ * another one. `beta` is the β that suits it, if it is not that of most meshes; `plane` is that of a terrain.
  * @typedef {{ spec: string, name: string, short: string, what?: string, thumb: string, drawn?: string, beta?: number,
- *   credit?: string, licence?: string }} Sample
+ *   plane?: import('edgeflip').Plane, credit?: string, licence?: string }} Sample
  */
 
 /** The folder of the files. */
@@ -35,12 +35,12 @@ export const SAMPLES = [
     licence: 'Apache-2.0',
   },
   {
-    spec: 'models/terrain.ply',
+    spec: 'models/terrain.obj',
     name: 'Terrain',
     short: 'Terrain',
-    what: 'Each cell cut along the same diagonal',
+    what: 'Judged from above, edges scrambled',
     thumb: thumb('terrain'),
-    beta: 60,
+    plane: 'xz',
     credit: 'noise of simplex-noise',
     licence: 'MIT',
   },

@@ -6,12 +6,13 @@ const [WIDTH, HEIGHT, MARGIN] = [128, 108, 4];
  * The picture as the text of an SVG file.
  *
  * @param {{ positions: ArrayLike<number>, indices: ArrayLike<number>, dimension: number }} mesh
+ * @param {number} [pitch] - From how far above a surface is seen, in radians.
  */
-export function wireframe({ positions, indices, dimension }) {
+export function wireframe({ positions, indices, dimension }, pitch = 0.28) {
   const points = Array.from({ length: positions.length / dimension }, (_, v) =>
     turned(
       [0, 1, 2].map((k) => (k < dimension ? positions[dimension * v + k] : 0)),
-      dimension === 3,
+      dimension === 3 ? pitch : undefined,
     ),
   );
   const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
@@ -41,10 +42,10 @@ export function wireframe({ positions, indices, dimension }) {
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${HEIGHT}">${path}</svg>`;
 }
 
-/** Seen from the right and from above, with y down as in a picture. */
-function turned([x, y, z], isSurface) {
-  if (!isSurface) return [x, -y];
-  const [yaw, pitch] = [-0.42, 0.28];
+/** Seen from the right and from above, with y down as in a picture; without a pitch, a mesh in the plane. */
+function turned([x, y, z], pitch) {
+  if (pitch === undefined) return [x, -y];
+  const yaw = -0.42;
   const [u, w] = [x * Math.cos(yaw) + z * Math.sin(yaw), z * Math.cos(yaw) - x * Math.sin(yaw)];
   return [u, -(y * Math.cos(pitch) - w * Math.sin(pitch))];
 }

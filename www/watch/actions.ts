@@ -23,7 +23,7 @@ export async function scramble(page: Page): Promise<void> {
     if (!canScramble(opened.mesh)) {
       throw new Error(`Scramble takes up to ${number.format(SCRAMBLED)} triangles. This mesh has more.`);
     }
-    const mesh = { ...opened.mesh, indices: await run.triangles() };
+    const mesh = { ...opened.mesh, ...opened.plan, indices: await run.triangles() };
     const seed = Math.floor(performance.now());
     indices = await opened.client.call((worker) => worker.scramble(mesh, settings.maxNormalAngle, seed));
   });

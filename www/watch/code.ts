@@ -2,6 +2,7 @@
 
 import { BROUGHT } from '../models/samples.js';
 import type { Opened } from './opening.ts';
+import { widthOf } from './plan.ts';
 import type { Shown } from './shown.ts';
 import { splitName } from './sources.ts';
 
@@ -36,7 +37,7 @@ export function codeFor({ opened, run, settings }: Shown): string {
     ...(isGenerated ? [`const mesh = await generate(${quoted(origin)});`] : linesOfReading(opened)),
     ...(arePoints
       ? [
-          'const { triangles } = await triangulate(mesh.positions, { stride: mesh.dimension });',
+          `const { triangles } = await triangulate(mesh.positions, { stride: ${widthOf(mesh)} });`,
           'mesh.indices = triangles;',
         ]
       : []),
@@ -50,7 +51,7 @@ const quoted = (text: string) => `'${text.replaceAll(/[\\']/g, '\\$&')}'`;
 
 /** The lines that read the file: of the page, or one that the visitor has. */
 function linesOfReading(opened: Opened): string[] {
-  const { origin, kept, isScrambled } = opened;
+  const { origin, kept, isScrambled, mesh } = opened;
   const [stem, extension] = splitName(opened.name);
   const ofPage = isScrambled || !origin?.startsWith(BROUGHT) ? undefined : new URL(origin, document.baseURI).href;
   const name = isScrambled ? `${stem.replaceAll(' ', '-')}-after-0${extension}` : opened.name;
@@ -58,6 +59,10 @@ function linesOfReading(opened: Opened): string[] {
   const files = beside.map(
     (other) => `${quoted(other)}: await load(${quoted(other.split('/').map(encodeURIComponent).join('/'))})`,
   );
+  const options = [
+    ...(files.length > 0 ? [`files: { ${files.join(', ')} }`] : []),
+    ...(mesh.plane ? [`plane: '${mesh.plane}'`] : []),
+  ];
   return [
     'const load = async (url) => new Uint8Array(await (await fetch(url)).arrayBuffer());',
     ...(isScrambled
@@ -66,7 +71,7 @@ function linesOfReading(opened: Opened): string[] {
         ? []
         : ['// The file is beside this page.']),
     `const bytes = await load(${quoted(ofPage ?? encodeURIComponent(name))});`,
-    `const mesh = await readMesh(bytes, ${quoted(name)}${files.length > 0 ? `, { files: { ${files.join(', ')} } }` : ''});`,
+    `const mesh = await readMesh(bytes, ${quoted(name)}${options.length > 0 ? `, { ${options.join(', ')} }` : ''});`,
   ];
 }
 

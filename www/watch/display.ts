@@ -11,6 +11,7 @@ import { LockCount } from './lock-count.ts';
 import type { Opened } from './opening.ts';
 import type { Phases } from './phases.ts';
 import { palette } from './palette.ts';
+import { widthOf } from './plan.ts';
 import { Panel } from './panel.ts';
 import { SLOW } from './player.ts';
 import { COLOURED, countStates, type Run } from './run.ts';
@@ -88,7 +89,7 @@ export class Display {
     this.#last = this.#found = undefined;
     this.inspection.close();
     const positions = unitPositions(mesh);
-    scene?.setMesh(positions, mesh.dimension);
+    scene?.setMesh(positions, widthOf(mesh));
     this.surface.begin(opened, isOther);
     if (isOther || !scene?.camera.isLooking) {
       scene?.lookAtAll();
@@ -245,7 +246,7 @@ export class Display {
 
   /** Lets the user inspect the edges of these triangles. */
   lookInto({ run, opened, settings }: Shown, indices: Uint32Array): void {
-    const { mesh, extras } = opened;
+    const { plan: mesh, extras } = opened;
     const states = run.states ?? this.#statesOf(run)?.states;
     this.inspection.show({ mesh, extras, indices, states, limits: settings });
   }
@@ -254,7 +255,7 @@ export class Display {
   showNumbers(shown: Shown, status: RunStatus, fingerprint?: string): void {
     const { run, opened, settings } = shown;
     this.panel.showIterations(run.iterations, run.at);
-    this.panel.showFacts(opened.mesh, run, status.summary, settings.maxNormalAngle, fingerprint);
+    this.panel.showFacts(opened.plan, run, status.summary, settings.maxNormalAngle, fingerprint);
     this.#showLegend(shown, status.summary?.nonManifoldEdges);
     this.showTransport(status);
   }

@@ -3,6 +3,7 @@
 import type { IndexedMesh } from 'edgeflip/files';
 import { select } from 'd3-selection';
 import { controls, element } from './controls.ts';
+import { widthOf } from './plan.ts';
 import type { Scene } from './scene.ts';
 
 /** How near to a point a line begins and ends, in pixels. A finger hides more than that. */
@@ -77,7 +78,7 @@ export class EdgeDrawing {
     const [mesh, at] = [this.#mesh, this.#scene()?.projector()];
     if (!mesh || !at) return undefined;
     let [nearest, found]: [number, number | undefined] = [NEAR, undefined];
-    for (let vertex = 0; vertex < mesh.positions.length / 2; vertex++) {
+    for (let vertex = 0; vertex < mesh.positions.length / widthOf(mesh); vertex++) {
       const [x, y] = at(vertex);
       const distance = Math.hypot(x - offsetX, y - offsetY);
       if (distance < nearest) [nearest, found] = [distance, vertex];

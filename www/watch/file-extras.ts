@@ -3,6 +3,7 @@
 import type { FileMesh } from 'edgeflip/files';
 import type { FileColours } from './colour-format.ts';
 import type { Kept } from './files.ts';
+import { widthOf } from './plan.ts';
 import type { Seams } from './seam.ts';
 import { WorkerClient } from './worker-client.ts';
 
@@ -39,10 +40,10 @@ export class FileExtras {
   }
 
   async #find(): Promise<void> {
-    const { positions, dimension, indices, dropped } = this.#mesh;
+    const { positions, indices, dropped } = this.#mesh;
     // A file without further content has no colours.
     if (dropped.length === 0) return;
-    const sizes = { vertices: positions.length / dimension, triangles: indices.length / 3, dropped };
+    const sizes = { vertices: positions.length / widthOf(this.#mesh), triangles: indices.length / 3, dropped };
     try {
       const found = await this.#beside((client) => client.call((worker) => worker.colours(this.#kept, sizes)));
       this.colours = found.colours;

@@ -17,8 +17,8 @@ export function hasPointsOnly({ positions, indices }: FileMesh, name: string): b
 }
 
 /**
- * The mesh with the Delaunay triangulation of x and y; heights stay. A file of it is written anew, with positions and
- * triangles only.
+ * The mesh with the Delaunay triangulation of x and y: with heights, a terrain. A file of it is written anew, with
+ * positions and triangles only.
  *
  * @throws if there is no triangle.
  */
@@ -37,5 +37,6 @@ export async function triangulated(mesh: FileMesh, name: string): Promise<PointM
     ...(equal > 0 ? [`${counted(equal, 'point')} ${repeats}`] : []),
     ...mesh.notes,
   ];
-  return { ...mesh, indices: triangles, notes, keeps: false, isTriangulated: true };
+  const terrain = dimension === 3 ? ({ dimension: 2, plane: 'xy' } as const) : {};
+  return { ...mesh, ...terrain, indices: triangles, notes, keeps: false, isTriangulated: true };
 }

@@ -18,12 +18,12 @@ export class LockCount {
   }
 
   async count({ opened, settings }: Shown): Promise<void> {
-    const { client, mesh } = opened;
+    const { client, plan: mesh } = opened;
     if (this.#of?.opened === opened && this.#of.settings === settings) return;
     this.#of = { opened, settings };
     this.#count = undefined;
     if (mesh.indices.length > 3 * COUNTED) return;
-    const { groups, lockedEdges, lockedTriangles }: Locks = { ...mesh, ...(await optionsFor(opened, settings)) };
+    const { groups, lockedEdges, lockedTriangles }: Locks = { ...opened.mesh, ...(await optionsFor(opened, settings)) };
     const locks = { groups, lockedEdges, lockedTriangles };
     const isFree = Object.values(locks).every((list) => list === undefined || list.length === 0);
     const count = isFree ? 0 : await client.call((worker) => worker.countLocks(mesh, locks));

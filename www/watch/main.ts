@@ -82,8 +82,9 @@ export function start(): Tool {
   const mesh = () => {
     const shown = page.shown;
     if (!shown) return undefined;
-    const { mesh, title: name } = shown.opened;
-    const { positions, indices, dimension, groups, lockedEdges, lockedTriangles }: OpenMesh = mesh;
+    const { mesh, plan, title: name } = shown.opened;
+    const { groups, lockedEdges, lockedTriangles }: OpenMesh = mesh;
+    const { positions, indices, dimension } = plan;
     const { maxNormalAngle, maxDeviation, keepsGroups } = shown.settings;
     const locks = { lockedEdges, lockedTriangles, groups: keepsGroups ? groups : undefined };
     const limits = dimension === 3 ? { maxNormalAngle, maxDeviation } : {};

@@ -1,7 +1,7 @@
 /** The worker: reads, generates and measures meshes, or runs an engine, so that the page never blocks. */
 
 import { expose, transfer } from 'comlink';
-import { EDGE_STATES, init, type FlipSession, type Iteration, type Options } from 'edgeflip';
+import { EDGE_STATES, init, type FlipSession, type Iteration, type Options, type Plane } from 'edgeflip';
 import {
   angles,
   change,
@@ -63,11 +63,16 @@ class MeshWorker {
     return transfer(mesh, buffersOf(mesh));
   }
 
-  /** `beside` has files that `main` may name. */
-  async read(main: Located, beside: Located[], report: Report): Promise<{ mesh: FileMesh; kept: Kept }> {
+  /** `beside` has files that `main` may name; `plane` is that of a terrain. */
+  async read(
+    main: Located,
+    beside: Located[],
+    plane: Plane | undefined,
+    report: Report,
+  ): Promise<{ mesh: FileMesh; kept: Kept }> {
     const { name } = main.file;
     const reading = readWith(main, beside, report, (bytes, files) =>
-      readMesh(bytes, name, { files }).catch(async (error: unknown) => {
+      readMesh(bytes, name, { files, plane }).catch(async (error: unknown) => {
         throw await errorOf(error, name, bytes);
       }),
     );

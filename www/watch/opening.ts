@@ -7,6 +7,7 @@ import { attributeOf } from './attributes.ts';
 import { FileExtras } from './file-extras.ts';
 import { Cancelled, WorkerClient } from './worker-client.ts';
 import type { Kept } from './files.ts';
+import { planOf } from './plan.ts';
 import { counted, number, staying } from '../shell/numbers.ts';
 import type { Read, Source } from './sources.ts';
 
@@ -16,6 +17,8 @@ export const BINS = 36;
 /** A mesh for a run. */
 export interface Opened {
   mesh: IndexedMesh;
+  /** The mesh as the flips see it: a terrain without its heights. */
+  plan: IndexedMesh;
   name: string;
   /** Its name for people, and what it is, if it is a sample. */
   title: string;
@@ -90,6 +93,7 @@ function openedOf(read: Read, source: Source): Opened {
   let measured: Promise<Quality> | undefined;
   const opened: Opened = {
     mesh,
+    plan: planOf(mesh),
     name,
     title: source.title ?? name,
     what: source.what,

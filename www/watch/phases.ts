@@ -10,6 +10,7 @@ import { made } from '../shell/elements.ts';
 import { counted, number } from '../shell/numbers.ts';
 import { element } from './controls.ts';
 import { flipsBetween } from './flip-animation.ts';
+import { widthOf } from './plan.ts';
 import type { Run } from './run.ts';
 import type { Scene } from './scene.ts';
 import { waitOf } from './sentences.ts';
@@ -156,9 +157,11 @@ export class Phases {
     const now = cornersOf(this.#now).map(places);
     const centres = now.map((corners) => middle(...corners));
     // The picture's y points down, so a triangle that faces the camera is clockwise.
+    const mesh = this.#host.shown()?.opened.mesh;
+    const isFlat = mesh !== undefined && widthOf(mesh) === 2;
     const isSeen = (t: number) => {
       const [[ax, ay], [bx, by], [cx, cy]] = now[t] as [Point, Point, Point];
-      return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < 0 || this.#host.shown()?.opened.mesh.dimension === 2;
+      return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < 0 || isFlat;
     };
     const ends = (half: number) => places([this.#now[half]!, this.#now[next(half)]!]);
     const candidates = this.#candidates().filter(({ halves }) => halves.some((half) => isSeen(triangleOf(half))));

@@ -3,9 +3,10 @@
  * needed.
  */
 
-import { readMesh, weld, type FileMesh, type IndexedMesh } from 'edgeflip/files';
+import { readMesh, weld, type FileMesh } from 'edgeflip/files';
 import { contentOfKept, GLTF, unpacked, type Kept } from './files.ts';
 import { GltfFile, type Part } from './gltf-file.ts';
+import { widthOf } from './plan.ts';
 import { next } from './quad.ts';
 import { keyOf, placeOf, type Seam, type Seams } from './seam.ts';
 
@@ -48,11 +49,12 @@ const MOST = 32;
 
 /** The seams of a mesh as it was read from its file. */
 export async function seamsOf(mesh: FileMesh, kept: Kept): Promise<Seams> {
-  const found = new Found(mesh.positions.length / mesh.dimension);
+  const found = new Found(mesh.positions.length / widthOf(mesh));
   for (const { name, edges } of mesh.attributeEdges.slice(0, MOST / 2)) {
     const others = mesh.attributeEdges.map((other) => other.name).filter((other) => other !== name);
     const { bytes, beside } = await contentOfKept(kept);
-    const options = { ignoreAttributes: others, files: Object.fromEntries(beside), dimension: mesh.dimension };
+    const { dimension, plane } = mesh;
+    const options = { ignoreAttributes: others, files: Object.fromEntries(beside), dimension, plane };
     addLocks(found, await readMesh(bytes, kept.name, options), { name, edges });
   }
   await addRims(
@@ -84,7 +86,7 @@ function addLocks(found: Found, { indices, groups, lockedEdges, lockedTriangles 
 
 /** Adds the edges at which two boundaries meet: each side has vertices of its own. */
 async function addRims(found: Found, mesh: FileMesh, file: GltfFile | undefined): Promise<void> {
-  const { indices, dimension } = mesh;
+  const { indices } = mesh;
   const [from, to]: number[][] = [[], []];
   const heads = endsOf(indices);
   forEachEdge(indices, heads, ([h, second]) => {
@@ -93,9 +95,10 @@ async function addRims(found: Found, mesh: FileMesh, file: GltfFile | undefined)
     to!.push(heads[h!]!);
   });
   const positions = mesh.placed ?? mesh.positions;
-  const joined = await weld({ positions, indices, dimension: mesh.placed ? 3 : dimension } as IndexedMesh);
+  const dimension = mesh.placed ? 3 : widthOf(mesh);
+  const joined = await weld({ positions, indices, dimension });
   const { places } = joined;
-  const vertices = positions.length / (mesh.placed ? 3 : dimension);
+  const vertices = positions.length / dimension;
   const parts = file?.parts(vertices, indices.length / 3);
   const differing = file && parts && differencesIn(file, parts);
   const seams = new Map<string, number>();

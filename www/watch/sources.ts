@@ -1,6 +1,7 @@
 /** The sources of meshes: samples, chosen files, and dropped files and folders. */
 
 import { proxy } from 'comlink';
+import type { Plane } from 'edgeflip';
 import { FORMATS, POINT_FORMATS, type FileMesh, type IndexedMesh } from 'edgeflip/files';
 import { fromEvent } from 'file-selector';
 import type { WorkerClient } from './worker-client.ts';
@@ -61,7 +62,7 @@ export function splitName(name: string): [stem: string, extension: string] {
 
 /** A mesh of the page: of a family, or a file that the page brings. */
 export function sample(spec: string): Source {
-  const { name: title, what, beta = BETA } = sampleOf(spec);
+  const { name: title, what, beta = BETA, plane } = sampleOf(spec);
   const generate = async (client: WorkerClient) => {
     const mesh = await client.call((worker) => worker.generate(spec));
     return { name: spec, mesh, kept: undefined, others: 0 };
@@ -71,7 +72,7 @@ export function sample(spec: string): Source {
     const answer = await fetch(new URL(spec, document.baseURI));
     if (!answer.ok)
       throw new Error(`${name} could not be loaded (${answer.status}). Check the connection, and try again.`);
-    return readFirst([{ path: name, file: new File([await answer.blob()], name) }], client, report);
+    return readFirst([{ path: name, file: new File([await answer.blob()], name) }], client, report, plane);
   };
   return {
     name: spec,
@@ -129,7 +130,13 @@ async function gather(event: Drop, folders: readonly string[]): Promise<Located[
   return files.sort((a, b) => depth(a) - depth(b) || compare(a.path, b.path));
 }
 
-async function readFirst(files: readonly Located[], client: WorkerClient, report: Report): Promise<Read> {
+/** `plane` is that of a terrain. */
+async function readFirst(
+  files: readonly Located[],
+  client: WorkerClient,
+  report: Report,
+  plane?: Plane,
+): Promise<Read> {
   const known = files.filter(isMesh);
   // In a folder with a mesh, a table may be anything.
   const triangles = known.filter(({ file: { name } }) => !POINTS.test(name));
@@ -140,7 +147,7 @@ async function readFirst(files: readonly Located[], client: WorkerClient, report
   const beside = GLTF.test(main.file.name)
     ? files.filter(({ path }) => path !== main.path && path.startsWith(folder))
     : [];
-  const { mesh, kept } = await client.call((worker) => worker.read(main, beside, proxy(report)));
+  const { mesh, kept } = await client.call((worker) => worker.read(main, beside, plane, proxy(report)));
   const used = new Set(Array.from(kept.beside.keys(), (name) => plain(folder + name)));
   const others = meshes.filter((file) => file !== main && !used.has(file.path)).length;
   const { name } = main.file;
