@@ -80,8 +80,8 @@ impl Splitter {
         }
     }
 
-    /// How far the lines at the locked edge of `h` would be from where they were given, if they met at this point, or if the
-    /// chains of that edge were led on the way to it: infinite if they cannot.
+    /// How far the lines at the locked edge of `h` would be from where they were given, if they met at this point, or if
+    /// the chains of that edge were led on the way to it: infinite if they cannot.
     fn deviation(&self, h: u32, point: DVec2, front: &Front, other: u32) -> f64 {
         let far = |line: u32, point| {
             let ends = self.lines[line as usize].map(|v| self.net.point(v));
@@ -206,7 +206,7 @@ impl Splitter {
         (points, is_near, step)
     }
 
-    /// Leads the chains of the edge of `h` through a vertex on its right: one at the point, or one that is before the point.
+    /// Leads the chains of the edge of `h` through a vertex on its right: one at the point, or one that is before it.
     /// `None` if something that has to stay is before the point.
     fn reach(&mut self, h: u32, point: DVec2, lines: [u32; 2], front: &Front) -> Result<Option<u32>, Error> {
         if !point.is_finite() {

@@ -62,6 +62,13 @@ impl Splitter {
         };
         self.chains.begin(line, from)?;
         if crosses {
+            // Then the triangles at an edge that the line crosses have the vertices near to the crossing.
+            for Part { way, .. } in &parts {
+                if let Way::Across(half_edges, sign) = way {
+                    self.net.sign = *sign;
+                    self.net.make_delaunay(half_edges.iter().map(|h| h / 3));
+                }
+            }
             let ends = [from, to].map(|v| self.net.point(v));
             self.thread(to, Front { line, ends, at: from, passed: vec![from], gates: Vec::new() })?;
             return Ok(Ok(()));
