@@ -154,7 +154,7 @@ impl Mesh {
         self
     }
 
-    /// Adds a vertex to a 2D mesh. The mesh stores 32-bit floats only if the point has such coordinates.
+    /// Adds a vertex to a 2D mesh. If the mesh stores 32-bit floats, the coordinates have to be such.
     pub(crate) fn push_vertex(&mut self, point: DVec2) {
         match &mut self.positions {
             Positions::F32(numbers) => numbers.extend(point.to_array().map(|x| x as f32)),

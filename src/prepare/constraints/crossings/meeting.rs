@@ -37,13 +37,12 @@ impl Splitter {
         let vertices =
             self.net.ends(h).into_iter().chain([h, self.net.twin(h)].map(|side| self.net.apex(side)));
         let points = points.into_iter().chain(vertices.map(|v| self.net.point(v)));
-        let mut ranked: Vec<_> = points
-            .map(|point| {
-                (self.turns_back(h, point, front, 4.0 * step), self.deviation(h, point, front, other), point)
-            })
-            .collect();
-        ranked.sort_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)));
-        for (_, _, point) in ranked {
+        let mut ranked: Vec<_> =
+            points.map(|point| (self.rank(h, point, front, other, step), point)).collect();
+        ranked.sort_by(|(one, _), (two, _)| {
+            one.0.total_cmp(&two.0).then(one.1.cmp(&two.1)).then(one.2.total_cmp(&two.2))
+        });
+        for (_, point) in ranked {
             if let Some(after) = self.meet(h, point, front, other)? {
                 return Ok(after);
             }
@@ -52,20 +51,20 @@ impl Splitter {
         Err(overlaps())
     }
 
-    /// Whether a chain would turn back by more than the slack if the line and the edge of `h` met at a point, or come to a
-    /// vertex again.
-    fn turns_back(&self, h: u32, point: DVec2, front: &Front, slack: f64) -> bool {
+    /// What decides between points for the crossing of the line and the locked edge of `h`; the least is best. A chain turns
+    /// back rather than deviate by more than two units in the last place, each a `step`.
+    fn rank(&self, h: u32, point: DVec2, front: &Front, other: u32, step: f64) -> (f64, bool, f64) {
+        let (deviation, vertex) = self.deviation(h, point, front, other);
+        let is_passed = vertex.is_some_and(|vertex| {
+            self.is_passed(vertex, front.line) && (vertex != front.at || !front.gates.is_empty())
+        });
         let is_between = |[from, to]: Segment| {
             let along = (to - from).normalize_or_zero();
-            (point - from).dot(along) > -slack && (to - point).dot(along) > -slack
+            (point - from).dot(along) > -4.0 * step && (to - point).dot(along) > -4.0 * step
         };
-        let edge = self.net.ends(h).map(|v| self.net.point(v));
-        !is_between([self.net.point(front.at), front.ends[1]])
-            || !is_between(edge)
-            || front
-                .passed
-                .iter()
-                .any(|&v| self.net.point(v) == point && (v != front.at || !front.gates.is_empty()))
+        let ways = [[self.net.point(front.at), front.ends[1]], self.net.ends(h).map(|v| self.net.point(v))];
+        let turns_back = is_passed || !ways.into_iter().all(is_between);
+        (deviation.max(2.0 * step), turns_back, deviation)
     }
 
     /// Whether the line and the locked edge of `h` can meet at a point, and no other vertex or locked edge is in the way.
@@ -80,18 +79,19 @@ impl Splitter {
         }
     }
 
-    /// How far the lines at the locked edge of `h` would be from where they were given, if they met at this point, or if the
-    /// chains of that edge were led on the way to it: infinite if they cannot.
-    fn deviation(&self, h: u32, point: DVec2, front: &Front, other: u32) -> f64 {
+    /// How far the lines at the locked edge of `h` would be from where they were given, if they met at this point, or if
+    /// the chains of that edge were led on the way to it: infinite if they cannot. The vertex there, if there is one.
+    fn deviation(&self, h: u32, point: DVec2, front: &Front, other: u32) -> (f64, Option<u32>) {
         let far = |line: u32, point| {
             let ends = self.lines[line as usize].map(|v| self.net.point(v));
             distance_from_segment(ends, point).unwrap_or(f64::MAX)
         };
         let own = far(front.line, point);
         match self.place(h, point) {
-            Place::Vertex(vertex) if self.net.ends(h).contains(&vertex) => own,
-            Place::Vertex(_) | Place::Edge | Place::Before => own.max(far(other, point)),
-            Place::Elsewhere => f64::INFINITY,
+            Place::Vertex(vertex) if self.net.ends(h).contains(&vertex) => (own, Some(vertex)),
+            Place::Vertex(vertex) => (own.max(far(other, point)), Some(vertex)),
+            Place::Edge | Place::Before => (own.max(far(other, point)), None),
+            Place::Elsewhere => (f64::INFINITY, None),
             Place::Behind => {
                 let (mut edge, mut line, mut largest) = (h, other, own);
                 loop {
@@ -99,17 +99,18 @@ impl Splitter {
                     let seen = self.net.look(e, point, &self.chains);
                     let target = if let Seen::Before(vertex) = seen { self.net.point(vertex) } else { point };
                     if edge != h && self.would_cross(front, e, target) {
-                        return f64::INFINITY;
+                        return (f64::INFINITY, None);
                     }
                     match seen {
-                        Seen::Nothing => return f64::INFINITY,
+                        Seen::Nothing => return (f64::INFINITY, None),
                         Seen::Behind(behind) => {
                             largest = largest.max(far(line, point));
                             edge = behind;
                             line = self.chains.first_line(self.net.ends(edge)).unwrap_or(other);
                         }
-                        Seen::Before(_) if edge == h => return far(line, target),
-                        _ => return largest.max(far(line, target)),
+                        Seen::Before(_) if edge == h => return (far(line, target), None),
+                        Seen::Vertex(vertex) => return (largest.max(far(line, target)), Some(vertex)),
+                        _ => return (largest.max(far(line, target)), None),
                     }
                 }
             }
@@ -206,7 +207,7 @@ impl Splitter {
         (points, is_near, step)
     }
 
-    /// Leads the chains of the edge of `h` through a vertex on its right: one at the point, or one that is before the point.
+    /// Leads the chains of the edge of `h` through a vertex on its right: one at the point, or one that is before it.
     /// `None` if something that has to stay is before the point.
     fn reach(&mut self, h: u32, point: DVec2, lines: [u32; 2], front: &Front) -> Result<Option<u32>, Error> {
         if !point.is_finite() {

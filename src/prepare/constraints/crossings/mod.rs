@@ -12,8 +12,11 @@
 //!   chains of a-b go a-p-b. A vertex at p serves as well. If another vertex q is in the triangle, the chains of a-b go
 //!   a-q-b, and the line goes on across one of the two. If an edge of chains is between, and has nothing between itself
 //!   and p, these chains go through p first, or through the vertex that is between.
-//! - Something that has to stay is in the way, such as the boundary. Then the neighbours of p are tried, and if none of
-//!   them will do, the lines meet at the nearer of a and b.
+//!
+//! If p is not right at a-b, or something is in the way, its neighbours and the corners of the two triangles at a-b are
+//! tried too: first those with which the lines stay nearest to where they were given. That choice is the only one that
+//! rounded numbers make. The lines can always meet at a and at b. Before a line that crosses others begins, flips make the
+//! triangles at it Delaunay, so that these corners are near.
 //!
 //! The chain of the line comes to the new vertex by the shortest path between the ends of the edges that the line has
 //! crossed since its last vertex. So it touches vertices that rounding would put on its other side.
@@ -25,7 +28,7 @@
 //! - Let n be the number of locked edges that the line crosses when it begins. Chains that are led through a vertex cross
 //!   the line as often as before: the line enters the triangle (a, b, q) through a-b and leaves it through a-q or q-b; and
 //!   the chains of an edge that it does not cross are never led across it. When the line has met one of these edges at a
-//!   vertex, one edge less is ahead. So a line adds at most n vertices on its way, and one more for each.
+//!   vertex, one edge less is ahead. Each meeting tries at most 14 points, so a line adds at most 14 n vertices.
 //! - Between two of them, chains are led through vertices that exist. With q, the point where the line crosses them moves
 //!   on along the line; each edge joins two of finitely many vertices, and has one such point.
 //! - Each search for p at one edge ends: whenever chains are led through a vertex in the triangle of their edge and p, the

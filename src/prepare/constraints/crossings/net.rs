@@ -6,7 +6,7 @@ use crate::mesh::embedded::Embedded;
 use crate::mesh::half_edge::{LOCKED, lock, next, prev, unflagged};
 use crate::mesh::named_edges::ordered;
 use crate::mesh::star::Star;
-use crate::predicates::area_sign;
+use crate::predicates::{area_sign, in_circle_sign};
 use crate::prepare::constraints::state::Links;
 use crate::prepare::constraints::walk::Region;
 use crate::system::memory;
@@ -237,6 +237,38 @@ impl Net {
         let h = links.fill(&region, &ears);
         self.set_corners(&region.triangles);
         Some(h)
+    }
+
+    /// Flips edges that are not Delaunay, from those of some triangles on, but for locked ones, and for those between
+    /// vertices whose stars may overlap.
+    pub(super) fn make_delaunay(&mut self, triangles: impl Iterator<Item = u32>) {
+        let mut stack: Vec<u32> = triangles.flat_map(|t| 3 * t..3 * t + 3).collect();
+        while let Some(h) = stack.pop() {
+            let g = self.twin(h);
+            if g == NONE || self.is_locked(h) {
+                continue;
+            }
+            let [u, v] = self.ends(h);
+            let quad = [u, v, self.apex(h), self.apex(g)];
+            let [p, q, r, s] = self.points(quad);
+            let [p, q] = if self.sign.is_lt() { [q, p] } else { [p, q] };
+            if quad.into_iter().all(|v| self.is_embedded(v)) && in_circle_sign(p, q, r, s).is_lt() {
+                self.flip(h, g);
+                stack.extend([h, prev(h), g, prev(g)]);
+            }
+        }
+    }
+
+    /// Flips the edge of two half-edges. Each then starts where it did, at the edge after it.
+    fn flip(&mut self, h: u32, g: u32) {
+        let [[c, after_h], [d, after_g]] =
+            [h, g].map(|side| [self.apex(side), self.twins[next(side) as usize]]);
+        self.triangles[next(h) as usize] = d;
+        self.triangles[next(g) as usize] = c;
+        self.link(h, after_g);
+        self.link(g, after_h);
+        self.link(next(h), next(g));
+        self.set_corners(&[h / 3, g / 3]);
     }
 
     fn set_corners(&mut self, triangles: &[u32]) {

@@ -18,6 +18,8 @@ pub(super) struct Splitter {
     pub(super) lines: Vec<[u32; 2]>,
     /// The two lines of each new vertex.
     pub(super) crossings: Vec<[u32; 2]>,
+    /// The last line that has passed each vertex, or [`NONE`]; shorter if the last vertices have none.
+    passed: Vec<u32>,
 }
 
 /// A line on its way.
@@ -26,8 +28,6 @@ pub(super) struct Front {
     pub(super) ends: Segment,
     /// The last vertex of its chain.
     pub(super) at: u32,
-    /// The vertices of its chain.
-    pub(super) passed: Vec<u32>,
     /// The edges that it has crossed since, each by the half-edge of the triangle that it has left.
     pub(super) gates: Vec<u32>,
 }
@@ -44,7 +44,7 @@ pub(super) enum After {
 
 impl Splitter {
     pub(super) fn new(net: Net, chains: Chains, lines: Vec<[u32; 2]>) -> Self {
-        Self { net, chains, lines, crossings: Vec::new() }
+        Self { net, chains, lines, crossings: Vec::new(), passed: Vec::new() }
     }
 
     /// Brings a line in, from the first of its ends to the second. The inner error says what keeps it out.
@@ -62,8 +62,15 @@ impl Splitter {
         };
         self.chains.begin(line, from)?;
         if crosses {
+            // Then the triangles at an edge that the line crosses have the vertices near to the crossing.
+            for Part { way, .. } in &parts {
+                if let Way::Across(half_edges, sign) = way {
+                    self.net.sign = *sign;
+                    self.net.make_delaunay(half_edges.iter().map(|h| h / 3));
+                }
+            }
             let ends = [from, to].map(|v| self.net.point(v));
-            self.thread(to, Front { line, ends, at: from, passed: vec![from], gates: Vec::new() })?;
+            self.thread(to, Front { line, ends, at: from, gates: Vec::new() })?;
             return Ok(Ok(()));
         }
         for Part { ends: [from, to], way } in parts {
@@ -81,12 +88,12 @@ impl Splitter {
 
     /// Leads a line that crosses locked edges to its end.
     fn thread(&mut self, to: u32, mut front: Front) -> Result<(), Error> {
+        self.pass(front.at, &mut front);
         'vertices: while !self.net.is_same(front.at, to) {
             let mut h = match self.net.start([front.at, to]).map_err(|_| overlaps())? {
                 Start::Edge(h, ends) => {
                     self.go_along(h, ends)?;
-                    front.at = ends[1];
-                    front.passed.push(front.at);
+                    self.pass(ends[1], &mut front);
                     continue;
                 }
                 Start::Triangle(h, start, sign) => {
@@ -127,6 +134,19 @@ impl Splitter {
             }
         }
         Ok(())
+    }
+
+    /// The line has come to a vertex.
+    fn pass(&mut self, vertex: u32, front: &mut Front) {
+        front.at = vertex;
+        let index = self.net.original(vertex) as usize;
+        self.passed.resize(self.passed.len().max(index + 1), NONE);
+        self.passed[index] = front.line;
+    }
+
+    /// Whether the present line has passed a vertex.
+    pub(super) fn is_passed(&self, vertex: u32, line: u32) -> bool {
+        self.passed.get(self.net.original(vertex) as usize) == Some(&line)
     }
 
     /// The side of the line on which a point is: greater on the left.
@@ -188,8 +208,8 @@ impl Splitter {
     /// crossed. `h` is a half-edge of a triangle of the vertex, also of the last one of the chain if no edge was crossed.
     pub(super) fn go_to(&mut self, vertex: u32, h: u32, front: &mut Front) -> Result<(), Error> {
         let gates = std::mem::take(&mut front.gates);
-        let at = std::mem::replace(&mut front.at, vertex);
-        front.passed.push(vertex);
+        let at = front.at;
+        self.pass(vertex, front);
         if at == vertex {
             return Ok(());
         }
