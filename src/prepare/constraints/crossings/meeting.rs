@@ -147,7 +147,13 @@ impl Splitter {
     /// the way to it. `None` if something that has to stay is in the way.
     fn meet(&mut self, h: u32, point: DVec2, front: &mut Front, other: u32) -> Result<Option<After>, Error> {
         let (g, lines) = (self.net.twin(h), [other, front.line]);
-        let after = match self.place(h, point, front) {
+        let place = self.place(h, point, front);
+        // A way back to the last vertex would leave out the vertices that it goes around.
+        if self.net.point(front.at) == point && !front.gates.is_empty() && !matches!(place, Place::Before(..))
+        {
+            return Ok(None);
+        }
+        let after = match place {
             Place::End(vertex) => {
                 self.go_to(vertex, h, front)?;
                 After::Into(g)
