@@ -16,7 +16,7 @@
 //! If p is not right at a-b, or something is in the way, its neighbours and the corners of the two triangles at a-b are
 //! tried too: first those with which the lines stay within two units in the last place and do not turn back, then those
 //! with which they stay nearest to where they were given. That choice is the only one that rounded numbers make. The lines
-//! can always meet at a and at b. Before a line that crosses others begins, flips make the triangles at it Delaunay, so
+//! can always meet at a or at b. Before a line that crosses others begins, flips make the triangles at it Delaunay, so
 //! that these corners are near.
 //!
 //! The chain of the line comes to the new vertex by the shortest path between the ends of the edges that the line has
