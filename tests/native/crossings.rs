@@ -10,7 +10,7 @@ use checker::check;
 use edgeflip::families::by_name;
 use edgeflip::{
     Backend, Dimension, Error, Mesh, Options, Order, Plane, Positions, SplitCrossings, constrained, io,
-    make_delaunay, quality, split_crossings,
+    make_delaunay, quality, split_crossings, triangulate,
 };
 use std::ops::ControlFlow;
 
@@ -37,22 +37,21 @@ fn assert_delaunay(mesh: &Mesh, lines: &[[u32; 2]]) {
 fn random_lines_become_chains() {
     let count = if std::env::var_os("EDGEFLIP_FULL").is_some() { 2000 } else { 120 };
     let (mut added, mut over) = (0, 0);
-    for seed in 0..count {
+    // In the last ones, lines have to turn back, meet before the last triangle, or not go around a vertex.
+    for seed in (0..count).chain([1289, 1709, 1799, 2050, 2931, 3488, 4610]) {
         let (mesh, lines) = sets::random_set(seed);
         let split =
             split_crossings(&mesh, &lines, &[], false).unwrap_or_else(|error| panic!("set {seed}: {error}"));
         let places = check(&mesh, &lines, &split);
-        if places > 2.0 {
-            println!("set {seed}: a chain is up to {places} units in the last place from its line");
-            over += 1;
-        }
+        assert!(places <= 3.0, "set {seed}: a chain is {places} units in the last place from its line");
+        over += u64::from(places > 2.0);
         added += split.crossings.len();
         if seed % 12 < 6 {
             assert_delaunay(&mesh, &lines);
         }
     }
     // Where hundreds of lines meet in a few units in the last place, there may be no nearer way.
-    assert!(100 * over <= count, "{over} of {count}");
+    assert!(1000 * over <= count, "{over} of {count}");
     assert!(added > 10 * count as usize, "{added} crossings");
 }
 
@@ -90,6 +89,23 @@ fn lines_may_overlap() {
     assert_eq!(split.crossings[0].constraints, [0, 2]);
     assert_eq!((split.crossings[0].between, split.crossings[0].at), ([0, 2], 0.5));
     assert_eq!(split.constraint_edges(), [[0, 1], [0, 4], [1, 4], [2, 4], [3, 4]]);
+}
+
+/// Two lines across two others.
+#[test]
+fn lines_cross_in_a_lattice() {
+    let points: Vec<f64> =
+        vec![0.0, 1.0, 3.0, 1.0, 0.0, 2.0, 3.0, 2.0, 1.0, 0.0, 1.0, 3.0, 2.0, 0.0, 2.0, 3.0];
+    let triangles = triangulate(&Positions::from(points.clone())).unwrap().triangles;
+    let mesh = Mesh::new(Dimension::Two, points, triangles).unwrap();
+    let lines = [[0, 1], [2, 3], [4, 5], [6, 7]];
+    let split = split(&mesh, &lines);
+    assert_eq!(check(&mesh, &lines, &split), 0.0);
+    let positions: Vec<f64> = split.mesh.positions().iter().skip(16).collect();
+    assert_eq!(positions, [1.0, 1.0, 1.0, 2.0, 2.0, 1.0, 2.0, 2.0]);
+    assert_eq!(split.chains, [[0, 8, 10, 1], [2, 9, 11, 3], [4, 8, 9, 5], [6, 10, 11, 7]]);
+    let pairs: Vec<[usize; 2]> = split.crossings.iter().map(|crossing| crossing.constraints).collect();
+    assert_eq!(pairs, [[0, 2], [1, 2], [0, 3], [1, 3]]);
 }
 
 /// The crossing has the numbers of the mesh: 32-bit floats if it stores such.

@@ -11,12 +11,13 @@ use std::cmp::Ordering;
 
 /// Where a point is, as seen from a half-edge of the edge that a line meets.
 enum Place {
-    /// At a corner of the triangle before the edge.
-    Vertex(u32),
+    /// At this end of the edge.
+    End(u32),
     /// On the edge.
     Edge,
-    /// In the triangle before the edge.
-    Before,
+    /// In one of the triangles before the edge that the line has crossed since its last vertex: its number, and the
+    /// vertex that is there. Nothing is in the triangle of the edge and the point.
+    Before(usize, Option<u32>),
     /// Behind the edge.
     Behind,
     /// Farther away.
@@ -29,7 +30,7 @@ impl Splitter {
         let other = self.chains.first_line(self.net.ends(h)).unwrap_or(front.line);
         let (points, is_near, step) = self.candidates(front, h, other);
         if is_near
-            && self.is_direct(h, points[0])
+            && self.is_direct(h, points[0], front)
             && let Some(after) = self.meet(h, points[0], front, other)?
         {
             return Ok(after);
@@ -68,9 +69,9 @@ impl Splitter {
     }
 
     /// Whether the line and the locked edge of `h` can meet at a point, and no other vertex or locked edge is in the way.
-    fn is_direct(&self, h: u32, point: DVec2) -> bool {
-        match self.place(h, point) {
-            Place::Vertex(_) | Place::Edge | Place::Before => true,
+    fn is_direct(&self, h: u32, point: DVec2, front: &Front) -> bool {
+        match self.place(h, point, front) {
+            Place::End(_) | Place::Edge | Place::Before(..) => true,
             Place::Behind => {
                 let seen = self.net.look(self.net.twin(h), point, &self.chains);
                 matches!(seen, Seen::Vertex(_) | Seen::Inside(_) | Seen::On(_))
@@ -87,10 +88,10 @@ impl Splitter {
             distance_from_segment(ends, point).unwrap_or(f64::MAX)
         };
         let own = far(front.line, point);
-        match self.place(h, point) {
-            Place::Vertex(vertex) if self.net.ends(h).contains(&vertex) => (own, Some(vertex)),
-            Place::Vertex(vertex) => (own.max(far(other, point)), Some(vertex)),
-            Place::Edge | Place::Before => (own.max(far(other, point)), None),
+        match self.place(h, point, front) {
+            Place::End(vertex) => (own, Some(vertex)),
+            Place::Edge => (own.max(far(other, point)), None),
+            Place::Before(_, vertex) => (own.max(far(other, point)), vertex),
             Place::Elsewhere => (f64::INFINITY, None),
             Place::Behind => {
                 let (mut edge, mut line, mut largest) = (h, other, own);
@@ -109,7 +110,9 @@ impl Splitter {
                             line = self.chains.first_line(self.net.ends(edge)).unwrap_or(other);
                         }
                         Seen::Before(_) if edge == h => return (far(line, target), None),
-                        Seen::Vertex(vertex) => return (largest.max(far(line, target)), Some(vertex)),
+                        Seen::Vertex(side) => {
+                            return (largest.max(far(line, target)), Some(self.net.apex(side)));
+                        }
                         _ => return (largest.max(far(line, target)), None),
                     }
                 }
@@ -118,16 +121,22 @@ impl Splitter {
     }
 
     /// Where a point is, as seen from the locked edge of `h`.
-    fn place(&self, h: u32, point: DVec2) -> Place {
-        let corners = [h, next(h), prev(h)].map(|side| self.net.vertex(side));
-        let [p, q, r] = corners.map(|v| self.net.point(v));
-        if let Some(corner) = [p, q, r].into_iter().position(|corner| corner == point) {
-            return Place::Vertex(corners[corner]);
+    fn place(&self, h: u32, point: DVec2, front: &Front) -> Place {
+        let ends = self.net.ends(h);
+        if let Some(end) = ends.into_iter().find(|&end| self.net.point(end) == point) {
+            return Place::End(end);
         }
+        let [p, q] = ends.map(|v| self.net.point(v));
         match self.net.turn(p, q, point) {
             Ordering::Equal if is_between(point, [p, q]) => Place::Edge,
-            Ordering::Greater if self.net.turn(q, r, point).is_gt() && self.net.turn(r, p, point).is_gt() => {
-                Place::Before
+            Ordering::Greater => {
+                let (side, vertex) = match self.net.look(h, point, &self.chains) {
+                    Seen::Inside(side) => (side, None),
+                    Seen::Vertex(side) => (side, Some(self.net.apex(side))),
+                    _ => return Place::Elsewhere,
+                };
+                let mut row = front.gates.iter().chain([&h]);
+                row.position(|&gate| gate == side).map_or(Place::Elsewhere, |i| Place::Before(i, vertex))
             }
             Ordering::Less if point.is_finite() => Place::Behind,
             _ => Place::Elsewhere,
@@ -138,8 +147,14 @@ impl Splitter {
     /// the way to it. `None` if something that has to stay is in the way.
     fn meet(&mut self, h: u32, point: DVec2, front: &mut Front, other: u32) -> Result<Option<After>, Error> {
         let (g, lines) = (self.net.twin(h), [other, front.line]);
-        let after = match self.place(h, point) {
-            Place::Vertex(vertex) if self.net.ends(h).contains(&vertex) => {
+        let place = self.place(h, point, front);
+        // A way back to the last vertex would leave out the vertices that it goes around.
+        if self.net.point(front.at) == point && !front.gates.is_empty() && !matches!(place, Place::Before(..))
+        {
+            return Ok(None);
+        }
+        let after = match place {
+            Place::End(vertex) => {
                 self.go_to(vertex, h, front)?;
                 After::Into(g)
             }
@@ -153,14 +168,16 @@ impl Splitter {
                     Ordering::Greater => After::Into(other_half),
                 }
             }
-            place @ (Place::Vertex(_) | Place::Before) => {
-                let vertex = match place {
-                    Place::Vertex(vertex) => vertex,
-                    _ => self.insert_inside(h, point, lines)?,
+            Place::Before(i, vertex) => {
+                let side = front.gates.get(i).copied().unwrap_or(h);
+                front.gates.truncate(i);
+                let vertex = match vertex {
+                    Some(vertex) => vertex,
+                    None => self.insert_inside(side, point, lines)?,
                 };
                 self.lead(g, vertex)?;
-                self.go_to(vertex, h, front)?;
-                front.gates.push(h);
+                self.go_to(vertex, self.net.twin(g), front)?;
+                front.gates.push(self.net.twin(g));
                 After::Into(g)
             }
             Place::Behind => match self.reach(h, point, lines, front)? {
@@ -223,8 +240,8 @@ impl Splitter {
                     edge = behind;
                     continue;
                 }
-                Seen::Before(vertex) | Seen::Vertex(vertex) => self.net.point(vertex),
-                Seen::Inside(_) | Seen::On(_) => point,
+                Seen::Before(vertex) => self.net.point(vertex),
+                Seen::Vertex(_) | Seen::Inside(_) | Seen::On(_) => point,
             };
             if edge != h && self.would_cross(front, e, target) {
                 return Ok(None);
@@ -232,7 +249,8 @@ impl Splitter {
             let vertex = match seen {
                 Seen::Inside(h) => self.insert_inside(h, point, lines)?,
                 Seen::On(h) => self.insert_on(h, point, lines)?.0,
-                Seen::Before(vertex) | Seen::Vertex(vertex) => vertex,
+                Seen::Before(vertex) => vertex,
+                Seen::Vertex(side) => self.net.apex(side),
                 Seen::Nothing | Seen::Behind(_) => return Ok(None),
             };
             self.lead(edge, vertex)?;

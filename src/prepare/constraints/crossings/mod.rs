@@ -6,17 +6,18 @@
 //! on the wrong side:
 //!
 //! - p is a or b: the lines meet there.
-//! - p is on a-b, or before it in the triangle that the line has come to: p becomes a vertex, and the chains of a-b go
-//!   a-p-b.
+//! - p is on a-b, or before it in one of the triangles that the line has crossed since its last vertex, and nothing is in
+//!   the triangle (a, b, p): p becomes a vertex, or is one, and the chains of a-b go a-p-b.
 //! - p is behind a-b. If nothing is in the triangle (a, b, p), p becomes a vertex, flips make a-p and p-b edges, and the
 //!   chains of a-b go a-p-b. A vertex at p serves as well. If another vertex q is in the triangle, the chains of a-b go
 //!   a-q-b, and the line goes on across one of the two. If an edge of chains is between, and has nothing between itself
 //!   and p, these chains go through p first, or through the vertex that is between.
 //!
 //! If p is not right at a-b, or something is in the way, its neighbours and the corners of the two triangles at a-b are
-//! tried too: first those with which the lines stay nearest to where they were given. That choice is the only one that
-//! rounded numbers make. The lines can always meet at a and at b. Before a line that crosses others begins, flips make the
-//! triangles at it Delaunay, so that these corners are near.
+//! tried too: first those with which the lines stay within two units in the last place and do not turn back, then those
+//! with which they stay nearest to where they were given. That choice is the only one that rounded numbers make. The lines
+//! can always meet at a or at b. Before a line that crosses others begins, flips make the triangles at it Delaunay, so
+//! that these corners are near.
 //!
 //! The chain of the line comes to the new vertex by the shortest path between the ends of the edges that the line has
 //! crossed since its last vertex. So it touches vertices that rounding would put on its other side.

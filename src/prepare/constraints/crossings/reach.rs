@@ -8,7 +8,7 @@ use glam::DVec2;
 
 /// What there is in the triangle of an edge and a point.
 pub(super) enum Seen {
-    /// A vertex at the point, and nothing before it.
+    /// A vertex at the point, opposite to this half-edge, and nothing before it.
     Vertex(u32),
     /// Nothing, and the point is inside the triangle of this half-edge.
     Inside(u32),
@@ -36,7 +36,7 @@ impl Net {
                 return Seen::Nothing;
             }
             if r == point {
-                return Seen::Vertex(far);
+                return Seen::Vertex(h);
             }
             let [beyond_y, beyond_x] = [self.turn(y, point, r).is_lt(), self.turn(point, x, r).is_lt()];
             if !beyond_y && !beyond_x {
