@@ -278,8 +278,8 @@ fn errors_name_the_constraint_and_what_it_meets() {
             .unwrap();
     let [first, second] = [[0.0, 0.0, 2.0, 0.0, 1.0, 1.0], [1.0, 1.0, 2.0, 2.0, 0.0, 2.0]];
     let apart = Mesh::new(Dimension::Two, [first, second].concat(), (0..6).collect()).unwrap();
-    let place = "constraint 0 between 0 and 3 reaches the point of vertex 3 in triangles without it; triangles \
-                 overlap there, or another vertex has that point";
+    let place = "constraint 0 between 0 and 3 reaches the point of vertex 3 in triangles without it: another \
+                 vertex has that point, or triangles overlap there; untangle may mend that";
     assert_refused(&apart, &[[0, 3]], &[], place);
     let same = "constraint 0 between 0 and 3 joins two vertices at the same point; weld them first";
     assert_refused(&twice, &[[0, 3]], &[], same);
