@@ -105,14 +105,17 @@ pub fn rewrite_mesh(
 
 fn load(file: &JsFile, dimension: Option<u32>) -> Result<Loaded, Error> {
     let (format, bytes, files) = (Format::of(Path::new(&file.name()))?, file.bytes(), file.files());
-    let mut options = ReadOptions::default();
-    options.dimension = dimension.map(dimension_of);
-    let named = file.plane();
-    options.plane = Plane::ALL.into_iter().find(|plane| named.as_deref() == Some(plane.name()));
-    options.coordinates =
-        file.coordinates().map(|bits| if bits == 32 { Coordinates::F32 } else { Coordinates::F64 });
-    options.ignore_attributes = file.ignore_attributes();
-    options.max_bytes = file.max_bytes().map_or(Ok(options.max_bytes), parse_max_bytes)?;
+    let (named, usual) = (file.plane(), ReadOptions::default());
+    let options = ReadOptions {
+        dimension: dimension.map(dimension_of),
+        plane: Plane::ALL.into_iter().find(|plane| named.as_deref() == Some(plane.name())),
+        coordinates: file
+            .coordinates()
+            .map(|bits| if bits == 32 { Coordinates::F32 } else { Coordinates::F64 }),
+        ignore_attributes: file.ignore_attributes(),
+        max_bytes: file.max_bytes().map_or(Ok(usual.max_bytes), parse_max_bytes)?,
+        ..usual
+    };
     options.check(bytes.length().into())?;
     // The bytes, and a mesh of the same size, twice while its arrays grow. If memory ran out during the call, the
     // memory that it had allocated would be lost.
