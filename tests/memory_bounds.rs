@@ -174,16 +174,21 @@ fn a_long_constraint_takes_what_it_asks_for() {
     *points.last_mut().unwrap() = 0.0;
     let triangles = triangulate(&points.clone().into()).unwrap().triangles;
     let mesh = Arc::new(Mesh::new(Dimension::Two, points, triangles).unwrap());
-    for threads in [1, 4] {
+    // Within the tolerance are no vertices but its ends, half of them, or all.
+    for (threads, constraint_tolerance) in [(1, 0.0), (4, 0.0), (1, 10.0), (1, 20.0)] {
         let options = Options {
             backend: Backend::Cpu,
             threads: NonZeroUsize::new(threads),
             constraints: vec![[0, count - 1]],
+            constraint_tolerance,
             ..Options::default()
         };
         let asked = Session::bytes(&mesh, &options);
         let taken = bytes_of(&mesh, options, asked);
-        assert!(taken <= asked + SLACK, "{threads} threads: {taken} bytes taken, {asked} asked for");
+        assert!(
+            taken <= asked + SLACK,
+            "{threads} threads, {constraint_tolerance}: {taken} bytes taken, {asked} asked for"
+        );
     }
 }
 

@@ -47,9 +47,16 @@ pub(super) fn bytes(mesh: &Mesh, options: &Options) -> u64 {
         0 => 0,
         count => CONSTRAINT * count + mesh.bytes(),
     };
+    // The search for the vertices near a constraint may meet all triangles, and it may become an edge per vertex.
+    let near = if options.constraint_tolerance > 0.0 && !options.constraints.is_empty() {
+        40 * mesh.triangle_count() as u64 + CONSTRAINT * mesh.vertex_count() as u64
+    } else {
+        0
+    };
     (triangle + changes) * mesh.triangle_count() as u64
         + VERTEX * mesh.vertex_count() as u64
         + LOCKED * options.locked_edges.len() as u64
         + arrangement
         + constraints
+        + near
 }
