@@ -34,8 +34,8 @@ function start(): void {
 }
 
 /**
- * Memory for so many indices, the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other meshes, and if no
- * worker can make it, or not yet.
+ * Memory for so many indices, the result of a mesh that goes to a GPU; the promise may have none. `undefined` for other
+ * meshes, and if no worker can make it, or not yet.
  */
 export function spareFor(
   indices: number,

@@ -245,18 +245,18 @@ pub struct Args {
     /// crossing_polygons (the numbers of faces, see the notes), points (null for a mesh: heights, whether they have a
     /// third coordinate; hull, the points on it, counter-clockwise; duplicates, each point that equals an earlier one,
     /// and that one), backend, adapter, fallback, status (done or stopped), iterations, flips, crossed_edges (that made
-    /// way for constraints), new_vertices (of --split-crossings), deviation (how far an edge of the list is at most from
-    /// its way through the result, with --split-crossings or --constraint-tolerance), left_out (for each constraint left out, its index in the list
-    /// and the reason), lost_edges (the two vertices of each locked edge that --untangle could not keep),
-    /// flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted (triangles that are turned over,
-    /// in the plane: they have not the orientation of the total area of their component), flat (triangles of no area),
-    /// min_angle_before_deg, min_angle_after_deg, before and after (min_angle_deg, mean_min_angle_deg, mean_aspect,
-    /// flat_triangles, area, volume), turned_triangles (by --reorient), joined_vertices, seam_edges, moved_triangles,
-    /// attribute_edges (locked to keep attributes), attribute_edges_by_name (how many each attribute locks; several may
-    /// lock the same edge), ms (wall times in milliseconds, see below), and with --verify audit (the violations), clean
-    /// (no violation, and no inverted triangle), remaining_edges (by reason, the two vertices of each edge left,
-    /// counted from 0), inverted_triangles and flat_triangles (counted from 0), and distance (between the surfaces
-    /// before and after).
+    /// way for constraints), new_vertices (of --split-crossings), deviation (how far an edge of the list is at most
+    /// from its way through the result, with --split-crossings or --constraint-tolerance), left_out (for each
+    /// constraint left out, its index in the list and the reason), lost_edges (the two vertices of each locked edge
+    /// that --untangle could not keep), flips_per_iteration, dispatches, device_bytes, remaining (by reason), inverted
+    /// (triangles that are turned over, in the plane: they have not the orientation of the total area of their
+    /// component), flat (triangles of no area), min_angle_before_deg, min_angle_after_deg, before and after
+    /// (min_angle_deg, mean_min_angle_deg, mean_aspect, flat_triangles, area, volume), turned_triangles (by
+    /// --reorient), joined_vertices, seam_edges, moved_triangles, attribute_edges (locked to keep attributes),
+    /// attribute_edges_by_name (how many each attribute locks; several may lock the same edge), ms (wall times in
+    /// milliseconds, see below), and with --verify audit (the violations), clean (no violation, and no inverted
+    /// triangle), remaining_edges (by reason, the two vertices of each edge left, counted from 0), inverted_triangles
+    /// and flat_triangles (counted from 0), and distance (between the surfaces before and after).
     ///
     /// The parts of ms add up to its total: start; load (IN is read); prepare (lists are read, vertices joined,
     /// triangles reversed, edges locked); device (the wait for the GPU, which opens while IN is read); constraints

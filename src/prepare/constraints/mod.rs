@@ -184,8 +184,8 @@ impl Work<'_> {
 
     /// The same, each through the vertices near it.
     fn run_near(&mut self, rounds: Rounds, skips: bool, tolerance: f64) {
-        for (index, &ends) in self.directed.clone().iter().enumerate() {
-            let chain = self.state.chain(ends, tolerance);
+        for index in 0..self.directed.len() {
+            let chain = self.state.chain(self.directed[index], tolerance);
             let done = rounds.bring_in_chain(&mut self.state, index, &chain);
             if !self.take(done) && !skips {
                 return;

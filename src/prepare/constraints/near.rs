@@ -2,7 +2,6 @@
 
 use super::state::State;
 use crate::NONE;
-use crate::mesh::half_edge::next;
 use crate::predicates::{Segment, compare_across, compare_along, is_near};
 use glam::DVec2;
 use std::collections::HashSet;
@@ -26,12 +25,14 @@ impl State<'_> {
             if !seen.insert(t) {
                 continue;
             }
-            for h in 3 * t..3 * t + 3 {
-                let [p, q] = [h, next(h)].map(|x| self.mesh.point2(self.vertex(x)));
-                if strip.has(p) {
-                    inside.push(self.vertex(h));
+            let half_edges = [3 * t, 3 * t + 1, 3 * t + 2];
+            let vertices = half_edges.map(|h| self.vertex(h));
+            let sides = vertices.map(|v| strip.sides(self.mesh.point2(v)));
+            for (k, h) in half_edges.into_iter().enumerate() {
+                if sides[k] == 0 && strip.has(self.mesh.point2(vertices[k])) {
+                    inside.push(vertices[k]);
                 }
-                if strip.sides(p) & strip.sides(q) == 0 && self.twin(h) != NONE {
+                if sides[k] & sides[(k + 1) % 3] == 0 && self.twin(h) != NONE {
                     open.push(self.twin(h) / 3);
                 }
             }
@@ -62,11 +63,10 @@ impl Strip {
         Self { line, tolerance, along, square, reach: tolerance * square.sqrt() }
     }
 
-    /// Whether a point is inside, but not at the place of an end.
+    /// Whether a point beyond no side is inside, but not at the place of an end.
     fn has(&self, p: DVec2) -> bool {
         let Self { line, tolerance, .. } = *self;
-        self.sides(p) == 0
-            && is_near(line, p, tolerance)
+        is_near(line, p, tolerance)
             && compare_along(line, line[0], p).is_lt()
             && compare_along(line, p, line[1]).is_lt()
     }
